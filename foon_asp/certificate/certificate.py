@@ -27,7 +27,10 @@ from foon_asp.text.json_text import json_line
 
 
 class NotBestError(Exception):
-    """A tree that was to be proved optimal is not: the tree ``units`` costs less."""
+    """A tree that was to be proved optimal is not: another tree costs less.
+
+    ``units`` are the units of the other tree, and ``costs`` are its costs.
+    """
 
     def __init__(self, units: tuple[int, ...], costs: Costs) -> None:
         super().__init__("the tree is not the best: another one costs less")
@@ -48,15 +51,22 @@ class Certificate(NamedTuple):
     certified: tuple[Objective, ...]
 
     def text(self) -> str:
-        """Return the certificate as JSON text, with each cut and each weight on a line of its own."""
+        """Return the certificate as JSON text.
+
+        Each key is on a line of its own, and so is each cut and each weight of a proof without branches.
+        """
         lines = []
         for key, value in self.content.items():
             if key == "cuts" and value:
                 value_text = "[\n" + ",\n".join("  " + json_line(cut) for cut in value) + "\n ]"
             elif key == "proof" and isinstance(value, dict) and value.get("weights"):
                 pairs = ",\n".join("  " + json_line(pair) for pair in value["weights"])
-                others = {name: content for name, content in value.items() if name != "weights"}
-                suffix = "".join(f', "{name}": {json_line(content)}' for name, content in others.items())
+                other_entries = {
+                    name: proof_entry for name, proof_entry in value.items() if name != "weights"
+                }
+                suffix = "".join(
+                    f', "{name}": {json_line(proof_entry)}' for name, proof_entry in other_entries.items()
+                )
                 value_text = f'{{"weights": [\n{pairs}\n ]{suffix}}}'
             else:
                 value_text = json_line(value)
@@ -80,18 +90,23 @@ def certify(
         problem: The problem; its network may be a part of a larger one (see ``subject``).
         objectives: The objectives, the most important first.
         units: The tree, by unit ids in an executable order.
-        covered: The user rules that the certificate states, and what they claim.
+        covered: The constraints that the certificate covers, and the names of the others.
         expired: Returns whether time is up.
         cuts: Sets of object nodes with a goal in each, tried first (:attr:`foon_asp.asp.Outcome.cuts`).
-        cases: The case split to begin with (``Outcome.cases``).
+        cases: The case split to begin with (``Outcome.cases``); ``None`` for none.
         subject: The whole network and its data, if the problem has only a part of it. The part then has all
             achievers of each node that is needed and not available, and there are no constraints.
 
     Returns:
-        The certificate. Under constraints that are not covered, it may prove only a bound on all trees.
-        ``None`` if time is up before a proof is found. Also ``None`` if an objective needs rates, and one is
-        0 or is not the rate of its motion. Also ``None`` if the proof is beyond the limits of ``verify``:
-        products of rates too close to be compared, or numbers too long to be written.
+        The certificate. If no objective is proved, or under constraints that are not covered, it may
+        prove only a bound on all trees. The result is ``None`` in these cases:
+
+        - Time is up before a proof is found.
+        - An objective needs rates, and a rate is 0.
+        - Units have rates that differ from those of their motions, and an objective needs rates or rules are
+          covered.
+        - The proof is beyond the limits of ``verify``: products of rates are too close to be compared, or
+          numbers are too long to be written.
 
     Raises:
         NotBestError: if the tree is not optimal, and no constraint is uncovered.
@@ -135,10 +150,11 @@ def certify_infeasible(
     expired: Callable[[], bool] = lambda: False,
     subject: Subject | None = None,
 ) -> Certificate | None:
-    """Return a certificate that there is no tree; ``subject`` is as for :func:`certify`.
+    """Return a certificate that there is no tree.
 
-    ``None`` where some tree satisfies all covered constraints, and where no proof is found before time is up.
-    Also ``None`` where constraints are covered and units have rates of their own.
+    Return ``None`` if some tree satisfies all covered constraints, or if no proof is found before time is up.
+    Also return ``None`` if constraints are covered and units have rates of their own. ``covered``,
+    ``expired`` and ``subject`` are as for :func:`certify`.
     """
     if covered.rules and problem.own_rates:
         return None
@@ -151,7 +167,7 @@ def certify_infeasible(
 
 
 def _prover(arrays: Arrays, expired: Callable[[], bool], cuts: Sequence[Sequence[int]] = ()) -> Prover:
-    """Return a prover over the arrays of a question, which starts with known cuts."""
+    """Return a prover of claims about the arrays, which starts with known cuts."""
     rules = arrays if arrays.ruled.barred or arrays.has_own_limits else None
     return Prover(
         arrays.graph,
@@ -176,9 +192,13 @@ def _write_tree_certificate(
     subject: Subject | None,
     bound: Vector | None = None,
 ) -> Certificate | None:
-    """Return the certificate of a claim about trees; each cut and each limit gets a number in it.
+    """Return the verified certificate of a claim about trees; each cut and each limit gets a number in it.
 
-    ``None`` where the numbers in the proof are too long for certificates.
+    Return ``None`` if the numbers in the proof are too long for certificates, or if the certificate is beyond
+    the limits of the verifier. Claims about user rules that the proof does not use are left out.
+
+    ``subject`` is ``None`` if the problem is over the whole network. ``bound`` is ``None`` unless the claim
+    is ``bound``.
     """
     problem, network = arrays.problem, arrays.problem.network
     subject = subject or subject_of(problem)
@@ -190,17 +210,22 @@ def _write_tree_certificate(
         """Return the number of a cut; a new cut gets the next number."""
         return cuts.setdefault(cut.objects, len(cuts))
 
-    def limit_number(row: int) -> int:
-        """Return the number of a limit; limits by user rules are numbered anew, after the rules."""
-        index = limit_numbers[row]
+    def limit_number(position: int) -> int:
+        """Return the number of a limit in the certificate, by its position among the limits of the arrays.
+
+        Limits by user rules are numbered after the rules, in the order of use.
+        """
+        index = limit_numbers[position]
         if index not in own_limits:
             return index
         return len(covered.rules) + own_numbers.setdefault(index, len(own_numbers))
 
     def packing_json(packing: Packing) -> dict[str, object]:
-        """Return the JSON of a cost partition."""
+        """Return the JSON of a cost partition: weights of cuts, weights of limits, and the divisor."""
         weights = sorted((cut_number(cut), arrays.vector_json(weight)) for cut, weight in packing.weights)
-        limits = sorted((limit_number(row), arrays.vector_json(weight)) for row, weight in packing.limits)
+        limits = sorted(
+            (limit_number(position), arrays.vector_json(weight)) for position, weight in packing.limits
+        )
         content: dict[str, object] = {"weights": [list(pair) for pair in weights]}
         if limits:
             content["limits"] = [list(pair) for pair in limits]
@@ -244,8 +269,10 @@ def _write_tree_certificate(
 class Claimed(NamedTuple):
     """The claim of a certificate.
 
-    ``units`` are a tree or plan, and ``bound`` is a cost vector in JSON; each is ``None`` for a claim without
-    it.
+    ``claim``: ``optimal``, ``bound`` or ``infeasible``.
+    ``objectives``: the objectives that the claim is about, most important first.
+    ``units``: the tree or plan; ``None`` for a claim without one.
+    ``bound``: the bound as the JSON of a cost vector; ``None`` for a claim without one.
     """
 
     claim: str
@@ -264,10 +291,11 @@ def write_certificate(
     subject: Subject,
     **more_keys: object,
 ) -> Certificate | None:
-    """Return a sealed and verified certificate; ``None`` where it is beyond the limits of the verifier.
+    """Return a sealed and verified certificate; ``None`` if it is beyond the limits of the verifier.
 
-    For a measure, the certificate states only the costs of the units that the proof looks at. Raises
-    :class:`BugError` where the verifier refuses it.
+    For a measure, the certificate states only the costs of the units that the proof looks at. ``more_keys``
+    are keys of the certificate beyond those of trees. Raises :class:`BugError` if the verifier refuses the
+    certificate.
     """
     network, (claim, objectives, units, bound) = problem.network, claimed
     try:
@@ -311,14 +339,14 @@ def write_certificate(
 
 
 def _costs_json(problem: Problem, objectives: Sequence[Objective], units: Sequence[int]) -> list[object]:
-    """Return the JSON of the costs of a tree or plan by each objective."""
-    measured = problem.costs(units)
-    figures = [measured.measure(objective) for objective in objectives]
-    return [figure if isinstance(figure, int) else fraction_text(figure) for figure in figures]
+    """Return the JSON of the costs of a tree or plan: a whole number or a fraction as text, by objective."""
+    costs = problem.costs(units)
+    values = [costs.measure(objective) for objective in objectives]
+    return [value if isinstance(value, int) else fraction_text(value) for value in values]
 
 
 def _seal_and_verify(certificate: Certificate, subject: Subject) -> Verified:
-    """Seal a certificate in place, and return what the verifier says that it proves."""
+    """Write the seal of a certificate into its content, and return the claim that the verifier accepts."""
     content = certificate.content
     content["seal"] = seal(content)
     return verify_any(read_certificate(certificate.text()), subject)
@@ -327,7 +355,7 @@ def _seal_and_verify(certificate: Certificate, subject: Subject) -> Verified:
 def subject_of(problem: Problem) -> Subject:
     """Return the data that certificates of a problem are about: its network, kitchen, rates and the like.
 
-    The problem has to be over a whole network, not a part of one.
+    The network of the problem has to be the whole network, not a part of it.
     """
     return Subject(
         *(problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices),
@@ -337,20 +365,20 @@ def subject_of(problem: Problem) -> Subject:
 
 
 def _measure_json(problem: Problem, objective: Objective) -> dict[str, Any]:
-    """Return the JSON of a measure: its rules, their digest, and the costs of all units."""
+    """Return the JSON of a measure: its rules, their digest, and the units by their cost."""
     rules = problem.measures[objective].text
-    numbers = map(problem.network.unit_number, range(len(problem.network)))
+    unit_numbers = map(problem.network.unit_number, range(len(problem.network)))
     costs = problem.figures(objective, range(len(problem.network)))
     return {
         "rules": rules,
         "sha256": hashlib.sha256(rules.encode()).hexdigest(),
-        "costs": _units_by_cost(dict(zip(numbers, costs, strict=True))),
+        "costs": _units_by_cost(dict(zip(unit_numbers, costs, strict=True))),
     }
 
 
 def _units_by_cost(costs: Mapping[int, int | Fraction]) -> dict[str, list[int]]:
-    """Return the units of each cost, ascending, by the cost as text: ``{"16/5": [3, 8]}``."""
-    listed: dict[str, list[int]] = {}
+    """Return the units of each cost, ascending, under the cost as text: ``{"16/5": [3, 8]}``."""
+    units_by_cost: dict[str, list[int]] = {}
     for unit in sorted(costs):
-        listed.setdefault(str(costs[unit]), []).append(unit)
-    return listed
+        units_by_cost.setdefault(str(costs[unit]), []).append(unit)
+    return units_by_cost

@@ -25,40 +25,44 @@ def certify_outcome(
     expired: Callable[[], bool] = lambda: False,
     subject: Subject | None = None,
 ) -> tuple[Outcome, Certificate | None]:
-    """Return an answer marked as certified, and the certificate; ``None`` where no certificate is found.
+    """Return an answer marked as certified, and its certificate; ``None`` if no certificate is found.
 
-    If the certificate proves the whole claim, ``certificate`` becomes the kind of proof of the answer, and a
-    plan that was found at a limit becomes optimal. If it proves only the first objectives, these are marked
-    as certified. The answer stays unchanged where only a bound is proved, or where user rules are taken on
-    trust. The seconds that this takes are added to the answer's in any case.
+    The objectives that the certificate proves are marked as certified. If it proves the whole claim,
+    ``certificate`` becomes the kind of proof of the answer, and a plan that was found at a limit becomes
+    optimal. If only a bound is proved, or if user rules are taken on trust, the answer is not marked. In all
+    cases, ``outcome.seconds`` gets the seconds of the search, under ``certificate``.
 
     ``subject`` is the whole network if the network of the answer is a part of it, as for
-    :func:`~foon_asp.certificate.certify`. Raises :class:`BugError` when a tree that the solver called optimal
-    is not, and when answer and certificate contradict each other.
+    :func:`~foon_asp.certificate.certify`. Raises :class:`BugError` if a tree that the solver called optimal
+    is not, or if answer and certificate contradict each other.
     """
-    began = time.perf_counter()
+    start_time = time.perf_counter()
     covered = coverage(settings)
-    plans = outcome.problem.items is not None
-    if plans:
+    is_plan = outcome.problem.items is not None
+    if is_plan:
         covered = covered_for_plans(covered)
     certificate = _find_certificate(outcome, settings, covered, expired, subject)
     if (
-        not plans
+        not is_plan
         and covered.not_covered
         and (certificate is None or certificate.claim == "bound")
         and outcome.proof is not None
     ):
         from foon_asp.certificate.own_rules import with_own_rules  # noqa: PLC0415 - it loads clingo
 
-        with_own = with_own_rules(covered, outcome.problem, settings)
-        trusting = None if with_own is None else _find_certificate(outcome, settings, with_own, expired)
-        if with_own is not None and trusting is not None and trusting.claim != "bound":
-            covered, certificate = with_own, trusting
-    outcome.seconds["certificate"] = time.perf_counter() - began
+        with_user_rules = with_own_rules(covered, outcome.problem, settings)
+        trusting = (
+            None
+            if with_user_rules is None
+            else _find_certificate(outcome, settings, with_user_rules, expired)
+        )
+        if with_user_rules is not None and trusting is not None and trusting.claim != "bound":
+            covered, certificate = with_user_rules, trusting
+    outcome.seconds["certificate"] = time.perf_counter() - start_time
     if certificate is not None:
-        why = _contradiction(outcome, certificate, covered)
-        if why is not None:
-            raise _wrong_answer(outcome, settings, why)
+        contradiction = _contradiction(outcome, certificate, covered)
+        if contradiction is not None:
+            raise _wrong_answer(outcome, settings, contradiction)
     if certificate is None or certificate.claim == "bound" or trusted_claims(certificate.content):
         return outcome, certificate
     complete = certificate.claim == "infeasible" or certificate.certified == levels(outcome.objectives)
@@ -76,9 +80,10 @@ def _find_certificate(
     expired: Callable[[], bool],
     subject: Subject | None = None,
 ) -> Certificate | None:
-    """Return a certificate about the trees that keep to the covered rules; ``None`` where none is found.
+    """Return a certificate about the trees or plans under the covered rules; ``None`` if none is found.
 
-    Raises :class:`BugError` where a tree is better than the optimal one of the answer.
+    Trees of answers that are neither optimal nor infeasible get none. Raises :class:`BugError` if a tree is
+    better than the optimal one of the answer.
     """
     if outcome.problem.items is not None:
         return _find_plan_certificate(outcome, covered, expired)
@@ -86,10 +91,10 @@ def _find_certificate(
         return certify_infeasible(outcome.problem, covered, expired, subject)
     if outcome.status is not Status.OPTIMAL or outcome.units is None:
         return None
-    wanted = levels(outcome.objectives)
+    objectives = levels(outcome.objectives)
     try:
         return certify(
-            outcome.problem, wanted, outcome.units, covered, expired, outcome.cuts, subject, outcome.cases
+            outcome.problem, objectives, outcome.units, covered, expired, outcome.cuts, subject, outcome.cases
         )
     except NotBestError as better:
         why = f"there is a better tree, {_tree_text(outcome, better.units)}"
@@ -99,9 +104,9 @@ def _find_certificate(
 def _find_plan_certificate(
     outcome: Outcome, covered: Coverage, expired: Callable[[], bool]
 ) -> Certificate | None:
-    """Return a certificate about the plans that keep to the covered rules; ``None`` where none is found.
+    """Return a certificate about the plans under the covered rules; ``None`` if none is found.
 
-    It may also be about a plan that was found at a limit.
+    The plan of the answer need not be optimal: it may have been found at a limit.
     """
     if outcome.status is Status.INFEASIBLE:
         return certify_no_plan(outcome.problem, covered, expired)
@@ -111,7 +116,7 @@ def _find_plan_certificate(
 
 
 def _contradiction(outcome: Outcome, certificate: Certificate, covered: Coverage) -> str | None:
-    """Return why an answer and a certificate contradict each other; ``None`` where they do not.
+    """Return in words why an answer and a certificate contradict each other; ``None`` if they do not.
 
     The verifier has accepted the certificate, but does not know the answer. So goals and claim of the
     certificate are compared with those of the answer here.
@@ -133,7 +138,10 @@ def _contradiction(outcome: Outcome, certificate: Certificate, covered: Coverage
 def _cost_contradiction(
     outcome: Outcome, units: Sequence[int], certificate: Certificate, covered: Coverage
 ) -> str | None:
-    """Return why the costs of a tree contradict a certificate; ``None`` where they do not."""
+    """Return in words why the costs of a tree contradict a certificate; ``None`` if they do not.
+
+    They do if they are below the proved bound, or differ from those of the tree that is proved optimal.
+    """
     problem, content = outcome.problem, certificate.content
     arrays = Arrays(problem, certificate.certified, covered)
     cost = arrays.order.total(arrays.costs[a] for a in arrays.actions(units))
@@ -143,39 +151,39 @@ def _cost_contradiction(
             return f"the certificate proves the bound {content['bound']}, and the tree costs less"
         return None
     tree = [unit for u in content["tree"] if (unit := problem.network.unit_of_number(u)) is not None]
-    proved = arrays.order.total(arrays.costs[a] for a in arrays.actions(tree))
-    if arrays.order.sign([*map(sub, cost, proved)]) != 0:
+    proved_cost = arrays.order.total(arrays.costs[a] for a in arrays.actions(tree))
+    if arrays.order.sign([*map(sub, cost, proved_cost)]) != 0:
         return f"the certificate proves another tree optimal, {_tree_text(outcome, tree)}"
     return None
 
 
 def _read_vector(arrays: Arrays, stated: Sequence[Any]) -> Vector:
-    """Return a cost vector from the JSON of a bound."""
+    """Return a bound as a cost vector, from its JSON."""
     vector: list[Fraction] = []
-    for objective, stated_part in zip(arrays.objectives, stated, strict=True):
+    for objective, stated_value in zip(arrays.objectives, stated, strict=True):
         if multiplies(objective):
-            vector += [Fraction(stated_part.get(str(rate), 0)) for rate in arrays.rates]
+            vector += [Fraction(stated_value.get(str(rate), 0)) for rate in arrays.rates]
         else:
-            vector.append(Fraction(stated_part))
+            vector.append(Fraction(stated_value))
     return tuple(vector)
 
 
 def _wrong_answer(outcome: Outcome, settings: Settings, why: str) -> BugError:
-    """Return an error for a wrong answer of the solver, with the question but without the data."""
+    """Return an error about a wrong answer of the solver; its message has the question, not the data."""
     problem = outcome.problem
-    question = [
+    question_lines = [
         f"goals: {' | '.join(str(problem.network.objects[goal]) for goal in problem.goals)}",
         f"containers: {problem.containers}, level {problem.network.level}",
         f"objectives: {', '.join(levels(outcome.objectives))}",
         f"network: {len(problem.network)} units, {len(problem.network.objects)} object nodes",
         f"kitchen: {len(problem.kitchen)} items",
     ]
-    question += [f"constraint: {file}" for file in settings.constraints]
-    question += [f"constant: {constant}" for constant in settings.constants]
+    question_lines += [f"constraint: {file}" for file in settings.constraints]
+    question_lines += [f"constant: {constant}" for constant in settings.constants]
     if settings.replaced is not None:
-        question.append(f"encodings: {settings.replaced}")
+        question_lines.append(f"encodings: {settings.replaced}")
     answer = "no tree" if outcome.units is None else _tree_text(outcome, outcome.units)
-    return BugError(f"the answer is {outcome.status}, {answer}, but {why}\n" + "\n".join(question))
+    return BugError(f"the answer is {outcome.status}, {answer}, but {why}\n" + "\n".join(question_lines))
 
 
 def _tree_text(outcome: Outcome, units: Sequence[int]) -> str:
@@ -186,9 +194,9 @@ def _tree_text(outcome: Outcome, units: Sequence[int]) -> str:
 def _costs_text(problem: Problem, units: Sequence[int]) -> str:
     """Return the costs of a tree in words, such as ``3 units, 7 inputs``, for a message."""
     costs = problem.costs(units)
-    figures = [f"{costs.units} units", f"{costs.inputs} inputs", f"{costs.ingredients} ingredients"]
-    figures.append(f"{costs.kitchen} kitchen items")
+    cost_texts = [f"{costs.units} units", f"{costs.inputs} inputs", f"{costs.ingredients} ingredients"]
+    cost_texts.append(f"{costs.kitchen} kitchen items")
     if costs.success is not None:
-        long = costs.success.denominator.bit_length() > ALLOWED.written_bits
-        figures.append(f"success {'of too many digits to print' if long else costs.success}")
-    return ", ".join(figures)
+        is_long = costs.success.denominator.bit_length() > ALLOWED.written_bits
+        cost_texts.append(f"success {'of too many digits to print' if is_long else costs.success}")
+    return ", ".join(cost_texts)

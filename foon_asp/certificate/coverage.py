@@ -32,9 +32,9 @@ class Coverage(NamedTuple):
     Attributes:
         rules: Rules from :data:`foon_asp.proof.rule_meaning.LIBRARY` with their values, and claims about user
             rules.
-        not_covered: Texts: names of other rules with digests, other constants with values, replaced
-            encodings.
-        limits: The search for limits that follow from user rules; ``None`` where it is not needed.
+        not_covered: The other constraints as texts: names of rules with their digests, constants with their
+            values, and replaced encodings.
+        limits: The search for limits that follow from user rules; ``None`` if it is not needed.
     """
 
     rules: tuple[Rule, ...] = ()
@@ -43,22 +43,25 @@ class Coverage(NamedTuple):
 
     @property
     def partial(self) -> bool:
-        """Whether some constraints are not covered, so that trees may have to keep to more than ``rules``."""
+        """Whether trees may have to keep to more than ``rules`` says.
+
+        They may if some constraints are not covered, or if user rules are covered by claims.
+        """
         return bool(self.not_covered) or any(rule["rule"] == OWN for rule in self.rules)
 
-    def ruled(self, problem: Problem) -> CompiledRules:
-        """Return the rules compiled into the network of a problem."""
+    def compile_rules(self, problem: Problem) -> CompiledRules:
+        """Return the covered rules, compiled for the network of a problem."""
         question, nodes = question_of(problem), len(problem.network.objects)
         return CompiledRules(
             [meaning_of_rule(rule, question) for rule in self.rules], nodes, len(problem.network) + nodes
         )
 
     def forbidden_units(self, problem: Problem) -> frozenset[int]:
-        """Return the units of a problem that rules remove."""
-        return self.ruled(problem).removed
+        """Return the units of a problem, by id, that covered rules remove."""
+        return self.compile_rules(problem).removed
 
     def rules_beyond_removal(self) -> list[str]:
-        """Return the names of covered rules that may do more than remove units."""
+        """Return the names of covered ready-made rules that may do more than remove units."""
         return [rule["rule"] for rule in self.rules if not LIBRARY[rule["rule"]].removes]
 
 
@@ -68,8 +71,11 @@ NOTHING = Coverage()  # no constraints at all
 def coverage(settings: Settings) -> Coverage:
     """Return the constraints of a question, divided into those that a certificate covers and the others.
 
-    Ready-made constraints are covered, with the values that were set. Other rules only exclude trees, so a
-    bound without them still holds. A replaced encoding may do anything, and is named as not covered. Under a
+    Ready-made constraints are covered, with the values that were set. They are omitted if a value is missing,
+    since they then exclude nothing. Rules that only list such values, as facts, add them to the values.
+
+    Other rules only exclude trees, so a bound without them still holds. Constants that nothing covered reads
+    are named as not covered. A replaced encoding may do anything, and is named as not covered. Under a
     replaced encoding, only ready-made rules that remove units are covered.
     """
     constants = dict(setting.partition("=")[::2] for setting in settings.constants)
@@ -83,26 +89,30 @@ def coverage(settings: Settings) -> Coverage:
         else:
             others.append(constraint)
     read_names = {name for stem, _ in uses for name in LIBRARY[stem].values}
-    facts: dict[str, set[str]] = {name: set() for name in LISTED if name in read_names}
+    values_by_predicate: dict[str, set[str]] = {name: set() for name in LISTED if name in read_names}
     for stem, constants_given in uses:  # what one use lists, the others read
-        for name in facts.keys() & LIBRARY[stem].values.keys():
-            facts[name] |= {string_constant(constants_given.get(LISTED[name], ""))} - {""}
-    if "heats" in facts:  # which begins with motions of the ready-made constraint
-        facts["heats"] |= _facts_of_rules(find_constraint(Path("never_heated")), among_others=True)["heats"]
+        for name in values_by_predicate.keys() & LIBRARY[stem].values.keys():
+            values_by_predicate[name] |= {string_constant(constants_given.get(LISTED[name], ""))} - {""}
+    if "heats" in values_by_predicate:  # which begins with motions of the ready-made constraint
+        values_by_predicate["heats"] |= _facts_of_rules(
+            find_constraint(Path("never_heated")), among_others=True
+        )["heats"]
     uncovered: list[str] = []
     for constraint in others:
-        listed_facts = _facts_of_rules(constraint) if facts else {}
-        if listed_facts and listed_facts.keys() <= facts.keys():
+        listed_facts = _facts_of_rules(constraint) if values_by_predicate else {}
+        if listed_facts and listed_facts.keys() <= values_by_predicate.keys():
             for name, listed_values in listed_facts.items():
-                facts[name] |= listed_values
+                values_by_predicate[name] |= listed_values
         else:
             uncovered.append(_name_with_digest(constraint))
     rules: dict[str, Rule] = {}
     for stem, constants_given in uses:
-        kinds = LIBRARY[stem].values.items()
+        types_by_name = LIBRARY[stem].values.items()
         values = {
-            name: sorted(facts[name]) if kind is list else _parsed_value(constants_given.get(name, ""), kind)
-            for name, kind in kinds
+            name: sorted(values_by_predicate[name])
+            if value_type is list
+            else _parsed_value(constants_given.get(name, ""), value_type)
+            for name, value_type in types_by_name
         }
         if all(value not in (None, "", []) for value in values.values()):
             rule = {"rule": stem, **values}
@@ -121,9 +131,9 @@ def coverage(settings: Settings) -> Coverage:
     )
 
 
-def _parsed_value(written: str, kind: type) -> Any:
-    """Return a value of a constraint, as a number or text; ``None`` for a number that is not set."""
-    if kind is int:
+def _parsed_value(written: str, value_type: type) -> Any:
+    """Return a value of a constraint from its text, as a number or text; ``None`` for a number not set."""
+    if value_type is int:
         return None if written in _UNSET else int(written)
     return string_constant(written)
 
@@ -132,7 +142,7 @@ def _facts_of_rules(constraint: Constraint, among_others: bool = False) -> dict[
     """Return the values that rules list as facts, by predicate: ``{"motion": {"stir"}}``.
 
     If the rules also have other statements, the result is empty. With ``among_others``, other statements are
-    ignored instead.
+    skipped. Only facts whose arguments are texts count.
     """
     from foon_asp.encoding import encoding  # noqa: PLC0415 - they load clingo
     from foon_asp.rules import stating  # noqa: PLC0415 - they load clingo
@@ -148,7 +158,7 @@ def _facts_of_rules(constraint: Constraint, among_others: bool = False) -> dict[
 
 
 def _name_with_digest(constraint: Constraint) -> str:
-    """Return the name of rules with their digest, and with their text if they were given as text."""
+    """Return the name of rules and their digest, and their text if they were given as text, as one text."""
     if isinstance(constraint, RuleText):
         return (
             f"{constraint.name} {_sha256(constraint.text.encode('utf-8', 'surrogatepass'))} {constraint.text}"
@@ -165,17 +175,18 @@ def _sha256(content: bytes) -> str:
 def without_unused_claims(
     rules: Iterable[Rule], members: Iterable[int], limits: Iterable[Limit] = ()
 ) -> tuple[Rule, ...]:
-    """Return the rules, with only those claims about user rules that a proof uses.
+    """Return the rules with only those claims about user rules that a proof uses.
 
-    A claim that units are removed is used if all these units are ``members`` of cuts. All other claims
-    remain. ``limits`` are the limits that the proof uses; they replace those of the user rules.
+    A claim that no tree has all of some units is used if all these units are ``members`` of cuts. Claims with
+    a second set of units remain. ``limits`` are the limits that the proof uses; they replace those of the
+    user rules.
     """
-    kept, stated = set(members), [_limit_json(*limit) for limit in limits]
+    members, used_limits = frozenset(members), [_limit_json(*limit) for limit in limits]
     return tuple(
         {
             **rule,
-            "claims": [claim for claim in rule["claims"] if claim[1] or kept.issuperset(claim[0])],
-            "limits": stated,
+            "claims": [claim for claim in rule["claims"] if claim[1] or members.issuperset(claim[0])],
+            "limits": used_limits,
         }
         if rule["rule"] == OWN
         else rule
@@ -184,7 +195,7 @@ def without_unused_claims(
 
 
 def _limit_json(amounts: Mapping[int, Fraction], max_sum: Fraction) -> list[Any]:
-    """Return the JSON of a limit: units by their amount, and the greatest sum, as ``[{"1": [3, 8]}, 1]``."""
+    """Return the JSON of a limit: units by their amount, and the greatest sum: ``[{"1": [3, 8]}, 1]``."""
     units: dict[str, list[int]] = {}
     for unit in sorted(amounts):
         units.setdefault(str(amounts[unit]), []).append(unit)

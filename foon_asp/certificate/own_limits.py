@@ -32,9 +32,10 @@ class OwnLimits:
         user_constraints: frozenset[Constraint],
         covered: Iterable[Limit],
     ) -> None:
-        """Read the rules of a question, of which the constraints ``user_constraints`` are user rules.
+        """Prepare the search, and find the limits that the rules state as sums.
 
-        Limits that follow from the ``covered`` ones are left out.
+        ``rules`` are all rules of the question, analysed, and ``user_constraints`` those constraints that are
+        user rules. Sums that follow from the limits ``covered`` are left out.
         """
         self._problem, self._deadline = problem, settings.effective_deadline
         numbered, relaxed = relax(
@@ -73,21 +74,22 @@ class OwnLimits:
             ]
 
     def exceeded_limit(self, units: frozenset[int]) -> Limit | None:
-        """Return a limit that units exceed, and record it; ``None`` where they keep to the rules.
+        """Search with clingo for a limit that ``units`` exceed: not all of some units that break a rule.
 
-        It is found by clingo. Raises ``KeyboardInterrupt`` where time is up.
+        Return it after appending it to ``found_limits``. Return ``None`` if the units keep to the rules.
+        Raises ``KeyboardInterrupt`` if time is up.
         """
         if not self._has_user_rules:
             return None
         network = self._problem.network
-        seen = units if self._all_local else units.union(reach(self._problem).units)
+        considered_units = units if self._all_local else units.union(reach(self._problem).units)
         question = Prepared(
             self._problem,
             (Objective.UNITS,),
             self._settings,
             self._deadline,
             self._program,
-            tuple(sorted(seen)),
+            tuple(sorted(considered_units)),
         )
         result = question.run(write_given(list(map(network.unit_number, sorted(units)))))
         if result.units is None:

@@ -34,23 +34,26 @@ def with_own_rules(covered: Coverage, problem: Problem, settings: Settings) -> C
     """Return the coverage with user rules as claims about removed and required units.
 
     Claims that follow from covered rules are left out, since they need no trust. Limits by antimonotone rules
-    are found later, during the proof. ``None`` where the meaning of the user rules is not known.
+    are found later, during the proof. The result covers all constraints. Return ``None`` if the meaning of
+    the user rules is not known.
     """
     rules = assemble(settings, lambda _: None).understood
     if rules is None:
         return None
-    applied = rules.restriction_of(problem, settings.effective_deadline, range(len(problem.network)))
-    if applied is None:
+    restriction = rules.restriction_of(problem, settings.effective_deadline, range(len(problem.network)))
+    if restriction is None:
         return None
     claims: list[list[list[int]]] = []
-    if isinstance(applied, Contradiction):
+    if isinstance(restriction, Contradiction):
         claims.append([[], []])
     else:
-        ruled = covered.ruled(problem)
-        required = {frozenset(makers) for makers in ruled.makers.values()}
-        removed = (u for u in range(len(problem.network)) if u not in ruled.removed and applied.removed(u))
+        compiled = covered.compile_rules(problem)
+        required = {frozenset(makers) for makers in compiled.makers.values()}
+        removed = (
+            u for u in range(len(problem.network)) if u not in compiled.removed and restriction.removed(u)
+        )
         claims += ([[unit], []] for unit in removed)
-        claims += ([[], sorted(units)] for units in applied.required if units not in required)
+        claims += ([[], sorted(units)] for units in restriction.required if units not in required)
     constraints = [find_constraint(constraint) for constraint in settings.constraints]
     own_rule: dict[str, Any] = {
         "rule": OWN,
@@ -67,8 +70,10 @@ def with_own_rules(covered: Coverage, problem: Problem, settings: Settings) -> C
         ),
     }
     user_constraints = frozenset(constraint for constraint in constraints if not _is_library(constraint))
-    stated = [(limit.amounts, limit.max_sum) for limit in covered.ruled(problem).limits.values()]
-    limits = OwnLimits(problem, settings, rules, user_constraints, stated)
+    covered_limits = [
+        (limit.amounts, limit.max_sum) for limit in covered.compile_rules(problem).limits.values()
+    ]
+    limits = OwnLimits(problem, settings, rules, user_constraints, covered_limits)
     return Coverage(tuple(sorted((*covered.rules, own_rule), key=canonical_json)), limits=limits)
 
 
@@ -77,9 +82,15 @@ def check_with_clingo(
 ) -> None:
     """Check with clingo the claims that a certificate of a problem takes on trust.
 
-    Clingo searches for a tree that keeps to the rules and violates a claim. It also checks that the
-    certificate's tree keeps to the rules. Raises :class:`RefusedError` where a claim is false or clingo
-    cannot run, and :class:`LimitError` where it does not finish.
+    Clingo searches for a tree that keeps to the rules and violates a claim or limit. It also checks that the
+    certificate's tree keeps to the rules. Raises :class:`RefusedError` if a claim is false or clingo cannot
+    run, and :class:`LimitError` if clingo does not finish.
+
+    Parameters:
+        content: The JSON of the certificate.
+        own_rule: The rule of the certificate that has the claims.
+        problem: The problem that the certificate is about.
+        deadline: The deadline of each search; ``None`` for no limit.
     """
     texts = [RuleText(file["text"]) for file in own_rule["files"]]
     constraints = (*texts, *map(named_constraint, own_rule["library"]))
@@ -89,23 +100,23 @@ def check_with_clingo(
     bodies = [_violated_claim(*claim) for claim in own_rule["claims"]] + [
         _exceeded_limit(*limit) for limit in own_rule["limits"]
     ]
-    wrong = "".join(f"_wrong :- {body}.\n" for body in bodies)
-    if wrong and _has_tree(content, problem, settings, f"{wrong}:- not _wrong.\n"):
+    wrong_rules = "".join(f"_wrong :- {body}.\n" for body in bodies)
+    if wrong_rules and _has_tree(content, problem, settings, f"{wrong_rules}:- not _wrong.\n"):
         raise RefusedError("what is taken on trust is not true: clingo finds a tree without it")
     if content["tree"] is not None:
         chosen = set(content["tree"])
-        fixed = (f":- {'not ' * (u in chosen)}use({u}).\n" for u in range(len(problem.network)))
-        if not _has_tree(content, problem, settings, "".join(fixed)):
+        fixing_rules = (f":- {'not ' * (u in chosen)}use({u}).\n" for u in range(len(problem.network)))
+        if not _has_tree(content, problem, settings, "".join(fixing_rules)):
             raise RefusedError("the tree does not keep to the rules: clingo says so")
 
 
 def _has_tree(content: Mapping[str, Any], problem: Problem, settings: Settings, rules: str) -> bool:
-    """Return whether clingo finds a tree of executable units that keeps to the additional ``rules``.
+    """Return whether clingo finds a tree that keeps to the constraints of ``settings`` and to ``rules``.
 
-    Raises :class:`RefusedError` where clingo cannot run, and :class:`LimitError` where it does not finish.
+    Raises :class:`RefusedError` if clingo cannot run, and :class:`LimitError` if it does not finish.
     """
-    ours = set(Objective)
-    objectives = tuple(Objective(name) for name in content["objective"] if name in ours)
+    known_objectives = set(Objective)
+    objectives = tuple(Objective(name) for name in content["objective"] if name in known_objectives)
     try:
         outcome = solve(problem, objectives, settings._replace(bounded=Bounded(rules, ())))
     except UserError as error:
@@ -116,7 +127,7 @@ def _has_tree(content: Mapping[str, Any], problem: Problem, settings: Settings, 
 
 
 def _violated_claim(used: list[int], without: list[int]) -> str:
-    """Return the body of a clingo rule that holds where a claim is violated.
+    """Return the body of a clingo rule that holds if a tree violates a claim.
 
     The claim is that no tree has all ``used`` units and none of ``without``.
     """
@@ -125,9 +136,10 @@ def _violated_claim(used: list[int], without: list[int]) -> str:
 
 
 def _exceeded_limit(amounts: Mapping[str, Sequence[int]], max_sum: int) -> str:
-    """Return a clingo aggregate that is true where a limit is exceeded.
+    """Return a clingo aggregate that holds if a tree exceeds a limit.
 
-    Raises :class:`LimitError` for sums too large for clingo.
+    ``amounts`` has the units of each amount, by the amount as text. Raises :class:`LimitError` if a sum may
+    be too large for clingo.
     """
     counted = [(int(amount), unit) for amount, units in amounts.items() for unit in units]
     if max(sum(amount for amount, _ in counted), abs(max_sum)) > INT32_MAX:
@@ -141,12 +153,12 @@ def _is_library(constraint: Constraint) -> bool:
 
 
 def _library_name(constraint: Constraint) -> str:
-    """Return the name of a ready-made constraint, with its values if these were given with it."""
+    """Return the name of a ready-made constraint, with those values that were given together with it."""
     return constraint.stem if isinstance(constraint, Path) else str(constraint)
 
 
 def _text_with_digest(constraint: Constraint) -> dict[str, str]:
-    """Return the name, the digest and the text of rules; a file that includes others is expanded."""
+    """Return the name, SHA-256 digest and text of rules; files that a file includes are put into it."""
     if isinstance(constraint, Path):
         is_alone = len(included_files(constraint)) == 1
         text = constraint.read_text("utf-8") if is_alone else read_encoding(constraint).text

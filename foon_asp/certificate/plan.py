@@ -45,7 +45,10 @@ _HALF = Fraction(1, 2)
 
 
 def covered_for_plans(covered: Coverage) -> Coverage:
-    """Return the coverage for plans: rules that their certificates cannot check go to ``not_covered``."""
+    """Return the coverage for plans: rules that certificates of plans cannot check go to ``not_covered``.
+
+    Claims about user rules and limits by them are dropped.
+    """
     rules = tuple(rule for rule in covered.rules if rule["rule"] in PLAN_RULES)
     others = {canonical_json(rule) for rule in covered.rules if rule not in rules and rule["rule"] != OWN}
     return Coverage(rules, tuple(sorted({*covered.not_covered, *others})))
@@ -60,9 +63,10 @@ def certify_plan(
 ) -> Certificate | None:
     """Certify that a plan is optimal, by as many of the first objectives as are proved, or certify a bound.
 
-    ``plan`` lists unit ids in the order of execution. Returns ``None`` where nothing is proved before time is
-    up. An objective that needs rates is not proved if a rate is 0. Units may have rates that differ from
-    those of their motions; then the result is ``None`` if an objective needs rates, or if rules are covered.
+    ``plan`` lists unit ids in the order of execution. ``expired`` returns whether time is up. Return ``None``
+    if nothing is proved before that, or if the certificate is beyond the limits of the verifier. An objective
+    that needs rates is not proved if a rate is 0. If units have rates that differ from those of their
+    motions, return ``None`` if an objective needs rates or rules are covered.
     """
     if problem.own_rates and (covered.rules or any(o.row.needs is OptionalData.RATES for o in objectives)):
         return None
@@ -91,7 +95,10 @@ def certify_plan(
 def certify_no_plan(
     problem: Problem, covered: Coverage = NOTHING, expired: Callable[[], bool] = lambda: False
 ) -> Certificate | None:
-    """Return a certificate that there is no plan; ``None`` where that is not proved before time is up."""
+    """Return a certificate that there is no plan; ``None`` if that is not proved before time is up.
+
+    Also return ``None`` if rules are covered and units have rates that differ from those of their motions.
+    """
     if covered.rules and problem.own_rates:
         return None
     question = _PlanQuestion(problem, covered_for_plans(covered), (), expired)
@@ -100,9 +107,12 @@ def certify_no_plan(
 
 
 class _PlanQuestion:
-    """A question about plans as arrays; its actions are the relevant units, by their position among them.
+    """A question about plans as arrays, and the parts of its certificate.
 
-    It collects the cuts, balances and rounded conditions that proofs use, and then writes the certificate.
+    The *actions* are the relevant units, by position among them. Conditions on counts are those of
+    :mod:`foon_asp.plans.conditions`. The cuts, balances and rounded conditions that proofs use are collected,
+    and then written with the certificate. ``proofs`` has the JSON of a proof for each objective proved so
+    far.
     """
 
     def __init__(
@@ -110,7 +120,7 @@ class _PlanQuestion:
     ) -> None:
         """Compute the reachable nodes, the relevant units, and the limits of rules in integers."""
         self._problem, self._covered, self._plan, self._expired = problem, covered, plan, expired
-        self._ruled = ruled = covered.ruled(problem)
+        self._ruled = ruled = covered.compile_rules(problem)
         self.proofs: list[Any] = []
         self._cuts: dict[tuple[int, ...], int] = {}
         self._balanced: set[int] = set()
@@ -122,7 +132,7 @@ class _PlanQuestion:
         self._simplified = replace(problem, kitchen=initial, restriction=restriction)
         self._reached = reached = reach(self._simplified)
         self._units = sorted(reached.units if required else units_relevant_to_plans(problem, reached))
-        self._limits: list[tuple[int, SumLimit, int]] = []  # place of the rule, the sum and its scale
+        self._limits: list[tuple[int, SumLimit, int]] = []  # number of the rule, the sum and its scale
         for rule_number, limit in ruled.limits.items():
             scale = math.lcm(
                 limit.max_sum.denominator, *(amount.denominator for amount in limit.amounts.values())
@@ -133,14 +143,16 @@ class _PlanQuestion:
 
     # --- finding
 
-    def prove(self, objective: Objective, before: Sequence[Objective]) -> tuple[Any, Vector | None] | None:
-        """Return the JSON of a proof that no plan costs less than the incumbent by an objective, and a bound.
+    def prove(
+        self, objective: Objective, earlier_objectives: Sequence[Objective]
+    ) -> tuple[Any, Vector | None] | None:
+        """Return the JSON of a proof that no plan costs less than the plan in hand by an objective.
 
-        Only plans as good by the objectives ``before`` count. For the first objective, a smaller bound may be
-        proved instead. The second value is then this bound, and otherwise ``None``. The proof is empty where
-        the incumbent costs nothing. Returns ``None`` if nothing is proved.
+        Only plans that are as good by ``earlier_objectives`` count. The second value is ``None`` for such a
+        proof. For the first objective, a smaller bound may be proved instead; the second value is then this
+        bound. If the plan in hand costs nothing, the proof is empty. Return ``None`` if nothing is proved.
         """
-        earlier_levels = [self._level(earlier) for earlier in before]
+        earlier_levels = [self._level(earlier_objective) for earlier_objective in earlier_objectives]
         if any(level is None for level in earlier_levels):
             return None
         levels = [level for level, _ in filter(None, earlier_levels)]
@@ -154,15 +166,15 @@ class _PlanQuestion:
         if proved is None:
             return None
         proof, least, columns = proved
-        if least != claim.least and before:
+        if least != claim.least and earlier_objectives:
             return None
         writer = _ProofWriter(self, claim.order if multiplies(objective) else None, levels, scales, columns)
         return writer.proof(proof), None if least == claim.least else least
 
     def prove_none(self) -> Any | None:
-        """Return the JSON of a proof that there is no plan; ``None`` where none is found.
+        """Return the JSON of a proof that there is no plan; ``None`` if none is found.
 
-        The proof is empty where a rule excludes every plan.
+        If a rule excludes every plan, the proof is empty.
         """
         problem, ruled = self._problem, self._ruled
         if ruled.never:
@@ -181,7 +193,10 @@ class _PlanQuestion:
         return None if proved is None else _ProofWriter(self, None, (), (), proved[2]).proof(proved[0])
 
     def _prover(self, derivation: Sequence[int]) -> PlanProver:
-        """Return a prover of the question, with the limits and required sets of rules."""
+        """Return a prover of the question, with the limits and the required sets of rules.
+
+        ``derivation`` has the actions of some plan or tree, which the prover starts from.
+        """
         flows: Flows = flows_of(self._problem, self._units)
         limits = [limit for _, limit, _ in self._limits]
         prover = PlanProver(flows, (), limits, derivation, expired=self._expired)
@@ -190,22 +205,22 @@ class _PlanQuestion:
             goal: tuple(actions_by_unit[u] for u in ruled.makers[goal] if u in actions_by_unit)
             for goal in ruled.goals
         }
-        prover.require([Landmark(members, objects=(goal,)) for goal, members in makers.items()])
+        prover.add_known_landmarks([Landmark(members, objects=(goal,)) for goal, members in makers.items()])
         return prover
 
     def _unit_costs(self, objective: Objective) -> list[Fraction]:
-        """Return the cost of each relevant unit by an objective, or its rate."""
+        """Return the cost of each action by an objective; its rate if the objective multiplies rates."""
         return list(map(Fraction, self._problem.figures(objective, self._units)))
 
     def _claim(self, objective: Objective) -> Claim:
-        """Return the claim that no plan costs less than the incumbent by an objective."""
-        problem, figures = self._problem, self._unit_costs(objective)
+        """Return the claim that no plan costs less than the plan in hand by an objective."""
+        problem, unit_costs = self._problem, self._unit_costs(objective)
         if multiplies(objective):
-            rates = sorted({rate for rate in figures if rate != 1}) or [_HALF]
+            rates = sorted({rate for rate in unit_costs if rate != 1}) or [_HALF]
             order = Lexicographic([rates])
             counts = Counter(problem.rate(unit) for unit in self._plan)
             least = tuple(Fraction(counts[rate]) for rate in rates)
-            costs = [tuple(Fraction(rate == own_rate) for own_rate in rates) for rate in figures]
+            costs = [tuple(Fraction(rate == own_rate) for own_rate in rates) for rate in unit_costs]
             plan_cost = order.approximate(least)[0]
             float_costs = (order.approximate(cost)[0] for cost in costs)
             caps = [math.floor(plan_cost / cost + 1e-6) if cost else None for cost in float_costs]
@@ -214,51 +229,53 @@ class _PlanQuestion:
         parts = None
         if objective not in problem.measures:
             all_unit_costs = problem.figures(objective, range(len(problem.network)))
-            parts = math.lcm(*(Fraction(figure).denominator for figure in all_unit_costs))
-        caps = [math.ceil(cost / figure) - 1 if figure else None for figure in figures]
+            parts = math.lcm(*(Fraction(unit_cost).denominator for unit_cost in all_unit_costs))
+        caps = [math.ceil(cost / unit_cost) - 1 if unit_cost else None for unit_cost in unit_costs]
         order = Lexicographic([None])
-        return Claim(order, [(f,) for f in figures], (Fraction(objective.row.item),), (cost,), parts, caps)
+        return Claim(order, [(f,) for f in unit_costs], (Fraction(objective.row.item),), (cost,), parts, caps)
 
     def _level(self, objective: Objective) -> tuple[Level, int] | None:
-        """Return the level of the incumbent by an objective, in integers, and the scale of the integers.
+        """Return the level of an objective in integers, and the scale of the integers.
 
-        A level says that a plan costs no more than the incumbent. ``None`` where the integers would be too
-        long.
+        The level is the condition that a plan costs no more than the plan in hand. Return ``None`` if the
+        integers would be too long.
         """
-        figures = self._unit_costs(objective)
+        unit_costs = self._unit_costs(objective)
         if multiplies(objective):
-            costs = [_scaled_minus_log(rate, up=False) for rate in figures]
+            costs = [_scaled_minus_log(rate, up=False) for rate in unit_costs]
             max_cost = sum(_minus_log_bound(self._problem.rate(unit), up=True) for unit in self._plan)
             return Level(Measure(costs), Fraction(0), math.ceil(LOGARITHM_SCALE * max_cost)), LOGARITHM_SCALE
         cost = Fraction(self._problem.costs(self._plan).measure(objective))
-        scale = math.lcm(cost.denominator, *(figure.denominator for figure in figures))
-        if scale * max(figures, default=0) > 10**9:  # conditions would be written with longer numbers
+        scale = math.lcm(cost.denominator, *(unit_cost.denominator for unit_cost in unit_costs))
+        if scale * max(unit_costs, default=0) > 10**9:  # conditions would be written with longer numbers
             return None
-        measure = Measure([int(scale * figure) for figure in figures], scale * objective.row.item)
+        measure = Measure([int(scale * unit_cost) for unit_cost in unit_costs], scale * objective.row.item)
         return Level(measure, scale * cost, int(scale * cost)), scale
 
     # --- writing
 
     def cut_number(self, objects: Iterable[int]) -> int:
-        """Return the number of a cut in the certificate, to which it is added if it is new."""
+        """Return the number of a cut in the certificate; a new cut is added to it."""
         return self._cuts.setdefault(tuple(sorted(set(objects))), len(self._cuts))
 
     def use_balance(self, o: int) -> int:
-        """Record that the proof uses the balance of an object, and return the object."""
+        """Record that the proof uses the balance of an object node, and return the node."""
         self._balanced.add(o)
         return o
 
     def rounded_number(self, condition: Rounded) -> int:
         """Return the number of a rounded condition in the certificate.
 
-        A new one is added, after the conditions that it is made of.
+        A new condition is added, after the rounded conditions that it is a sum of.
         """
-        number = next((i for i, other in enumerate(self._rounded) if other is condition), None)
+        number = next(
+            (i for i, earlier_condition in enumerate(self._rounded) if earlier_condition is condition), None
+        )
         if number is not None:
             return number
         by_kind: dict[str, dict[int, Fraction]] = {}
-        for of_sum, weight in condition.weights:
-            kind, index, scale = self.count_reference(of_sum)
+        for summand, weight in condition.weights:
+            kind, index, scale = self.count_reference(summand)
             weights = by_kind.setdefault(kind, {})
             weights[index] = weights.get(index, Fraction(0)) + weight * scale
         self._rounded.append(condition)
@@ -271,10 +288,10 @@ class _PlanQuestion:
         return len(self._rounded) - 1
 
     def count_reference(self, condition: Condition) -> tuple[str, int, Fraction]:
-        """Return how the certificate refers to a condition on counts alone, as a kind and a number.
+        """Return how the certificate refers to a condition: its kind, its number, and a factor.
 
-        The third value is the factor by which the weight of the condition is multiplied. The condition is
-        recorded as used.
+        The kind is ``balance``, ``limits`` or ``rounded``. The number of a balance is the id of its node. The
+        weight of the condition is multiplied by the factor. The condition is recorded as used.
         """
         if isinstance(condition, Balance):
             return "balance", self.use_balance(condition.object), Fraction(1)
@@ -285,19 +302,19 @@ class _PlanQuestion:
         return "rounded", self.rounded_number(condition), condition.scale
 
     def unit(self, action: int) -> int:
-        """Return the id of the unit that an action is."""
+        """Return the unit of an action, by id."""
         return self._units[action]
 
     def limit_and_scale(self, number: int) -> tuple[int, int]:
-        """Return the number of a limit in the certificate, and the scale by which its sum was multiplied."""
+        """Return the number in the certificate of a limit of the prover, and the scale of its integers."""
         rule_number, _, scale = self._limits[number]
         return rule_number, scale
 
     def _unreachable_nodes(self) -> list[int]:
-        """Return unreachable nodes, which prove that no plan executes certain irrelevant units.
+        """Return unreachable nodes, ascending, which prove that no plan executes certain irrelevant units.
 
-        Each of these units has one of the returned nodes as a precondition. They are the units that could
-        cross a cut or achieve a balanced node, and the achievers of the returned nodes.
+        These units could cross a cut or add a balanced node, or they add one of the returned nodes. Each of
+        them has one of the returned nodes as a precondition.
         """
         flows, units, removed = self._problem.flows, set(self._units), self._ruled.removed
         proof_nodes = {o for cut in self._cuts for o in cut} | self._balanced
@@ -311,19 +328,19 @@ class _PlanQuestion:
         while waiting:
             preconditions = flows[waiting.pop()].asks
             if unreached.isdisjoint(preconditions):
-                lacking = next(o for o in preconditions if not self._reached.available[o])
-                unreached.add(lacking)
-                waiting += (unit for unit in self._achievers(lacking) if unit not in removed)
+                unreachable_node = next(o for o in preconditions if not self._reached.available[o])
+                unreached.add(unreachable_node)
+                waiting += (unit for unit in self._achievers(unreachable_node) if unit not in removed)
         return sorted(unreached)
 
     def _achievers(self, o: int) -> list[int]:
-        """Return all units that add a node."""
+        """Return all units that add copies of a node."""
         return [unit for unit in self._problem.makers[o] if o in self._problem.flows[unit].adds]
 
     def _amounts_json(self) -> list[list[Any]]:
         """Return the JSON of the amounts of all units of the data: a unit, its inputs and its outputs.
 
-        Units are left out if no amounts are stated for them.
+        Inputs and outputs are pairs of a node id and an amount. Units without stated amounts are left out.
         """
         network = self._problem.network
         by_id = ((network.unit_id(unit), sides) for unit, sides in self._problem.amounts.items())
@@ -341,7 +358,10 @@ class _PlanQuestion:
         plan: Sequence[int] | None = None,
         bound: Sequence[Vector] | None = None,
     ) -> Certificate | None:
-        """Return a verified certificate; ``None`` where it is beyond the limits of the verifier."""
+        """Return a verified certificate of a claim; ``None`` if it is beyond the limits of the verifier.
+
+        ``bound`` has the bound by the first objective, for the claim ``bound``.
+        """
         problem = self._problem
         items, network = problem.items, problem.network
         assert items is not None
@@ -354,14 +374,14 @@ class _PlanQuestion:
         )
         stated_nodes = ((o, stays) for o, stays in nodes if o is not None)
         try:
-            order = None if bound is None else self._claim(objectives[0]).order
-            stated = None if bound is None else [weight_json(vector, order) for vector in bound]
+            cost_order = None if bound is None else self._claim(objectives[0]).order
+            bound_json = None if bound is None else [weight_json(vector, cost_order) for vector in bound]
         except LimitError:
             return None
         return write_certificate(
             PLAN,
             problem,
-            Claimed(claim, tuple(objectives), plan, stated),
+            Claimed(claim, tuple(objectives), plan, bound_json),
             self._covered,
             [list(cut) for cut in self._cuts],
             list(proofs),
@@ -378,11 +398,11 @@ class _PlanQuestion:
 
 
 class _ProofWriter:
-    """Writer of proofs by counts as JSON.
+    """Writer of the JSON of proofs about counts, by one objective.
 
     ``order``: the order of costs by an objective that multiplies rates, else ``None``.
     ``levels``, ``scales``: the levels of earlier objectives, and the scales of their integers.
-    ``columns``: the item of each column that is not a unit.
+    ``columns``: the id of the kitchen item of each column of the linear program that is not an action.
     """
 
     def __init__(
@@ -415,9 +435,9 @@ class _ProofWriter:
         }
 
     def _reference(self, condition: Condition) -> tuple[str, tuple[int, ...], int | Fraction]:
-        """Return how the certificate refers to a condition, as a kind and a key.
+        """Return how the certificate refers to a condition: its kind, the numbers that name it, and a factor.
 
-        The third value is the factor by which the weight of the condition is multiplied.
+        The weight of the condition is multiplied by the factor. The condition is recorded as used.
         """
         question = self._question
         if isinstance(condition, Landmark):
@@ -436,7 +456,7 @@ class _ProofWriter:
 
 
 def weight_json(weight: Vector, order: Lexicographic | None) -> str | dict[str, str]:
-    """Return the JSON of a weight by an objective: a number as text, or the exponents by rate."""
+    """Return the JSON of a weight: a fraction as text or, with rates in ``order``, the exponents by rate."""
     rates = None if order is None else order.levels[0]
     if rates is None:
         return fraction_text(weight[0])
@@ -452,8 +472,8 @@ def _minus_log_bound(rate: Fraction, up: bool) -> Fraction:
 
 
 def _scaled_minus_log(rate: Fraction, up: bool) -> int:
-    """Return a bound of ``-log(rate)`` as an integer, scaled by ``LOGARITHM_SCALE`` and rounded down.
+    """Return ``LOGARITHM_SCALE`` times a bound of ``-log(rate)``, rounded down.
 
-    It is an upper bound, before rounding, if ``up``, else a lower one.
+    The bound is an upper one if ``up``, else a lower one.
     """
     return math.floor(LOGARITHM_SCALE * _minus_log_bound(rate, up))

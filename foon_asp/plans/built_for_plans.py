@@ -27,7 +27,7 @@ def require_built_for_plans(settings: Settings) -> None:
 
 
 def require_rules_of_plans(program: Program) -> None:
-    """Raise :class:`UserError` if user rules read more than which units a plan executes, and how often."""
+    """Raise :class:`UserError` if user rules read more of a plan than how often it executes each unit."""
     for name, arity in sorted(program.looked_at):
         if name.lstrip("_") in _NOT_READ:
             raise UserError(f"rules over {name}/{arity} are not built for items that are used up")

@@ -9,11 +9,11 @@ from foon_asp.problem import Problem
 def order_executions(
     problem: Problem, times: frozenset[tuple[int, ...]], after: frozenset[tuple[int, ...]]
 ) -> Plan:
-    """Return executions in topological order, as unit ids.
+    """Return a plan that has the given executions in topological order.
 
     ``times`` has pairs of a unit number and its count. An execution is a unit number and its turn, from 1.
-    ``after`` has rows of two executions (four numbers), of which the second has to come first. Of executions
-    that are ready together, smaller ones come first.
+    ``after`` has pairs of executions, each as four numbers: the second execution has to come before the
+    first. Among executions that are ready together, smaller ones come first.
     """
     predecessors: dict[tuple[int, int], set[tuple[int, int]]] = {
         (unit, turn): set() for unit, count in times for turn in range(1, count + 1)

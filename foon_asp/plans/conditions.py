@@ -43,7 +43,10 @@ class Landmark(NamedTuple):
 
 
 class Balance(NamedTuple):
-    """The row of the state equation of an object: initial and added copies suffice for those consumed."""
+    """The row of the state equation of an object: its initial and added copies suffice.
+
+    They suffice for the copies that are consumed and those that have to remain of a goal.
+    """
 
     object: int
 
@@ -72,7 +75,10 @@ class Remainder(NamedTuple):
 
 
 class Sum(NamedTuple):
-    """The condition that executions keep to a limit on a weighted sum; ``limit`` is its index."""
+    """The condition that executions keep to a limit on a weighted sum.
+
+    ``limit`` is the index in the list of limits of the question (:data:`SumLimit`).
+    """
 
     limit: int
 
@@ -88,14 +94,15 @@ class Rounded(NamedTuple):
 
 
 SumLimit = tuple[Mapping[int, int], int, bool, bool]
-"""Weights by action, a bound on the sum, whether it is a lower bound, and whether actions count once."""
+"""A limit on a sum: weights by action, a bound on the sum, whether this is a lower bound, and whether each
+action counts once, however often it is executed."""
 
 
 class Level(NamedTuple):
-    """An objective with the cost of the incumbent.
+    """The condition that a plan is as good as the incumbent, the best plan so far, by an objective.
 
-    A plan is as good as the incumbent if its costs by ``measure.costs`` add up to at most ``max_cost``. If
-    these costs are rounded down, its exact cost also has to be at most ``cost``, or below it if ``strict``.
+    Its costs by ``measure.costs`` have to add up to at most ``max_cost``. If these costs are rounded down,
+    its cost by ``measure.exact`` also has to be at most ``cost``, or below it if ``strict``.
     """
 
     measure: Measure

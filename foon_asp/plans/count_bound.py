@@ -25,7 +25,7 @@ from foon_asp.plans.whole_program import INTEGRALITY, Bounds, Solved, Stopped, W
 
 
 class BetterError(Exception):
-    """Raised when a plan better than the incumbent is found.
+    """Raised if a plan better than the incumbent is found, or any plan where there is no incumbent.
 
     ``counts``: its counts of executions; empty if clingo found it.
     """
@@ -39,12 +39,17 @@ class BetterError(Exception):
 class CountBound:
     """Branch and bound over the counts of executions in plans for one question.
 
+    *Columns* are those of a linear program. An *indicator* of an action is a column that is 1 if the action
+    is executed at all, and else 0. Landmarks, supplies, remainders and rounded rows that a solution violates
+    are added to the known conditions, and kept for later programs.
+
     ``flows``: the preconditions and effects of actions.
     ``required``: disjunctive action landmarks.
     ``limits``: limits on weighted sums, with weights from 0.
     ``derivation``: actions that reach the targets in the delete relaxation; landmarks are grown around them.
     ``levels``: plans that are worse than the incumbent by any level are excluded.
-    ``excluded_counts``: plans that execute each action at least as often as any of the counts are excluded.
+    ``excluded_counts``: a plan is excluded if it executes all actions at least as often as one of these
+    counts says.
     ``expired``: returns whether time is up; the methods then raise :class:`Stopped`.
 
     ``proved`` is a lower bound on the cost of every plan by the first level; the methods raise it.
@@ -62,7 +67,7 @@ class CountBound:
     ) -> None:
         """Keep the conditions; nothing is solved yet."""
         self._flows, self._limits, self._expired = flows, limits, expired
-        self._size = len(flows.asks)
+        self._action_count = len(flows.asks)
         self._levels, self._excluded_counts = tuple(levels), tuple(excluded_counts)
         self.derivation = derivation
         self._random = random.Random(0)
@@ -73,12 +78,11 @@ class CountBound:
         self._copies: list[Supply | Remainder] = []
 
     def cheapest_counts_by_equation(self, measures: Sequence[Measure]) -> Counts | None:
-        """Return counts of least cost in floats, the first measure most important.
+        """Return counts of least cost, as far as floats tell, the first measure most important.
 
         The counts are of a plan of the delete relaxation, as those of :meth:`cheapest_counts`. They are found
-        by the state equation, where few actions have indicators, which is much faster. Returns ``None`` if no
-        counts are found. It does not search, and returns ``None``, if items have costs or counts are
-        excluded.
+        by the state equation, where few actions have indicators, which is much faster. Return ``None`` if no
+        counts are found. If items have costs or counts are excluded, return ``None`` without a search.
         """
         if self._excluded_counts or any(measure.item for measure in measures):
             return None
@@ -97,18 +101,19 @@ class CountBound:
                     assumed_cost = 2 * total
                 equation.add_level(Level(measure, Fraction(total), total))
             if not self._add_violated(x, equation):
-                return {a: round(n) for a, n in enumerate(x[: self._size]) if round(n)}
+                return {a: round(n) for a, n in enumerate(x[: self._action_count]) if round(n)}
             self._stop_if_expired()
 
     def _assumed_caps(self, measure: Measure, assumed_cost: int | None) -> Sequence[int | None]:
         """Return an upper bound on the count of each action in plans of up to an assumed cost.
 
-        Indicators need such bounds. Empty if no cost is assumed.
+        Actions without cost get ``first_executions`` for each copy wanted. Indicators need such bounds. If no
+        cost is assumed, return an empty list.
         """
         if assumed_cost is None:
             return ()
-        free = PLANS.first_executions * max(self._flows.targets.values(), default=1)
-        return [assumed_cost // cost if cost else free for cost in measure.costs]
+        cap_without_cost = PLANS.first_executions * max(self._flows.targets.values(), default=1)
+        return [assumed_cost // cost if cost else cap_without_cost for cost in measure.costs]
 
     def _state_equation(self, levels: Sequence[Level] = (), caps: Sequence[int | None] = ()) -> StateEquation:
         """Return a new state equation with all known conditions, ``caps`` on counts and ``levels``."""
@@ -124,8 +129,11 @@ class CountBound:
         return equation
 
     def _add_violated(self, x: Sequence[float], equation: StateEquation) -> bool:
-        """Add a new landmark, supply or remainder that a solution violates; return whether there is one."""
-        used = {a for a in range(self._size) if x[a] > INTEGRALITY}
+        """Add a landmark, supply or remainder that a solution violates and the equation lacks, if any.
+
+        Return whether one was added.
+        """
+        used = {a for a in range(self._action_count) if x[a] > INTEGRALITY}
         landmark = self._violated_landmark(used, set(), {})
         if landmark is not None and landmark not in self._landmarks:
             self._landmarks.append(landmark)
@@ -142,15 +150,18 @@ class CountBound:
         return False
 
     def cheapest_counts(self, measures: Sequence[Measure], rounds: int = 30) -> Counts | None:
-        """Return counts of least cost in floats, the first measure most important.
+        """Return counts of least cost, as far as floats tell, the first measure most important.
 
-        ``None`` if HiGHS finds none. The counts are of a plan of the delete relaxation. There may be no plan
-        with these counts, and their optimality is not proved. Up to ``rounds`` times, landmarks that the
-        counts violate are added.
+        Return ``None`` if HiGHS finds none. The counts are of a plan of the delete relaxation. There may be
+        no plan with these counts, and their optimality is not proved. Counts are searched up to ``rounds``
+        times, each time with a further landmark that the last counts violate.
         """
         counts = None
-        wanted = max(self._flows.targets.values(), default=1)
-        for assumed_cap in (PLANS.first_executions * wanted, PLANS.last_executions * wanted):
+        most_copies_wanted = max(self._flows.targets.values(), default=1)
+        for assumed_cap in (
+            PLANS.first_executions * most_copies_wanted,
+            PLANS.last_executions * most_copies_wanted,
+        ):
             counts = self._cheapest_counts_up_to(measures, rounds, assumed_cap)
             if counts is not None and max(counts.values(), default=0) < assumed_cap:
                 break
@@ -159,7 +170,7 @@ class CountBound:
     def _cheapest_counts_up_to(
         self, measures: Sequence[Measure], rounds: int, assumed_cap: int
     ) -> Counts | None:
-        """Return counts of least cost as :meth:`cheapest_counts`, under an assumed cap on all counts."""
+        """Return counts of least cost like :meth:`cheapest_counts`, with no count above an assumed cap."""
         counts: Counts | None = None
         for _ in range(rounds):
             model = self._new_model(measures, assumed_cap)
@@ -170,31 +181,34 @@ class CountBound:
                 if solution is None:
                     return None
                 x = solution
-                for a in range(self._size):  # floats may leave indicators of large counts near 0
-                    x[self._size + a] = float(x[a] > 0.5)
+                for a in range(self._action_count):  # floats may leave indicators of large counts near 0
+                    x[self._action_count + a] = float(x[a] > 0.5)
                 model.limit_cost(measure, x)
                 self._stop_if_expired()
-            counts = {a: round(x[a]) for a in range(self._size) if x[a] > 0.5}
+            counts = {a: round(x[a]) for a in range(self._action_count) if x[a] > 0.5}
             if not self._add_landmark(x, model):
                 break
         return counts
 
     def _solve_relaxed(self, model: CountModel, objective: Mapping[int, int]) -> list[float] | None:
-        """Add violated landmarks to the relaxation; return its solution if that is whole, else ``None``."""
+        """Add violated landmarks to the relaxation; return its solution if that is whole, else ``None``.
+
+        Indicators have to be whole only if counts are excluded.
+        """
         while True:
             self._stop_if_expired()
             x = model.program.solve(objective).x
             if x is None or not self._separate(x, model, at_root=True):
                 break
-        columns = {*range(model.program.columns)}
+        columns = {*range(model.program.column_count)}
         if not self._excluded_counts:
-            columns.difference_update(range(self._size, 2 * self._size))
+            columns.difference_update(range(self._action_count, 2 * self._action_count))
         if x is None or any(abs(x[column] - round(x[column])) > INTEGRALITY for column in columns):
             return None
         return x
 
     def is_infeasible(self) -> bool:
-        """Return whether it is proved that no counts satisfy all conditions, so that no plan exists."""
+        """Return whether the relaxation proves that no counts satisfy all conditions: no plan exists."""
         model = self._new_model(())
         while True:
             solved = model.program.solve({})
@@ -205,20 +219,20 @@ class CountBound:
             self._stop_if_expired()
 
     def max_executions(self) -> int | None:
-        """Return an upper bound on the executions in a plan; ``None`` if unbounded."""
+        """Return an upper bound on the number of executions in a plan; ``None`` if no bound is proved."""
         program = self._new_model(()).program
-        bound = program.solve(dict.fromkeys(range(self._size), -1)).bound
+        bound = program.solve(dict.fromkeys(range(self._action_count), -1)).bound
         return None if abs(bound) == math.inf else math.floor(-bound)
 
     def max_counts(self, level: Level) -> list[int | None]:
-        """Return an upper bound on the count of each action in plans as good as a level.
+        """Return an upper bound on the count of each action in all plans that satisfy a level.
 
-        ``None`` for an action is no bound.
+        The entry of an action without a bound is ``None``.
         """
         model = self._new_model((level.measure,))
         model.add_level(level)
         caps: list[int | None] = []
-        for action in range(self._size):
+        for action in range(self._action_count):
             self._stop_if_expired()
             solved = model.program.solve({action: -1})
             caps.append(None if solved.bound == -math.inf else math.floor(-solved.bound))
@@ -233,11 +247,15 @@ class CountBound:
         them is a better plan. Raises :class:`BetterError` if so, and :class:`Stopped` if time is up.
         """
         for i, level in enumerate(levels):
-            earlier, is_rounded = levels[:i], level.measure.exact is not None
+            earlier_levels, is_rounded = levels[:i], level.measure.exact is not None
             step = math.gcd(*level.measure.costs, level.measure.item) or 1
             max_cost = level.max_cost if is_rounded else (math.ceil(level.cost) - 1) // step * step
             self._search_counts(
-                level.measure, max_cost, is_better, earlier, [*earlier, level._replace(strict=True)]
+                level.measure,
+                max_cost,
+                is_better,
+                earlier_levels,
+                [*earlier_levels, level._replace(strict=True)],
             )
 
     def visit_counts(self, levels: Sequence[Level], visit: Callable[[Counts], None]) -> None:
@@ -245,14 +263,14 @@ class CountBound:
 
         Costs of the last level have to be whole. Raises :class:`Stopped` if time is up.
         """
-        *earlier, last = levels
-        self._search_counts(last.measure, last.max_cost, visit, earlier, earlier)
+        *earlier_levels, last_level = levels
+        self._search_counts(last_level.measure, last_level.max_cost, visit, earlier_levels, earlier_levels)
 
     def prove_infeasible(self, measure: Measure, is_better: Callable[[Counts], bool]) -> None:
         """Prove that there is no plan at all; counts of low cost by ``measure`` are tried first.
 
         ``is_better`` is called with counts, and returns whether some order of them is a plan. Raises
-        :class:`BetterError` if so, and :class:`Stopped` if nothing is proved.
+        :class:`BetterError` if so, and :class:`Stopped` if nothing is proved. ``proved`` does not change.
         """
         proved = self.proved
         try:
@@ -265,19 +283,24 @@ class CountBound:
         measure: Measure,
         max_cost: int | None,
         is_better: Callable[[Counts], bool | None],
-        earlier: Sequence[Level] = (),
+        earlier_levels: Sequence[Level] = (),
         levels: Sequence[Level] = (),
     ) -> None:
         """Call ``is_better`` with all counts of cost up to ``max_cost``, by branch and bound.
 
-        ``None`` is no limit of cost. Only counts as good as the incumbent are considered: by rounded costs
-        for each level in ``earlier``, and by exact costs for each of ``levels``. Raises :class:`BetterError`
-        if ``is_better`` returns true, and :class:`Stopped` after too many nodes.
+        If ``max_cost`` is ``None``, the cost has no limit. Only counts as good as the incumbent are
+        considered: by rounded costs for each level in ``earlier_levels``, and by exact costs for each of
+        ``levels``. Without ``earlier_levels``, ``proved`` is raised. Raises :class:`BetterError` if
+        ``is_better`` returns true, and :class:`Stopped` after too many nodes.
         """
-        if max_cost is not None and not measure.item and self._equation_exceeds(measure, max_cost, earlier):
+        if (
+            max_cost is not None
+            and not measure.item
+            and self._equation_exceeds(measure, max_cost, earlier_levels)
+        ):
             return
-        model = self._new_model([measure, *(level.measure for level in earlier)])
-        for level in earlier:
+        model = self._new_model([measure, *(level.measure for level in earlier_levels)])
+        for level in earlier_levels:
             model.add_level(level)
         objective = model.objective(measure)
         if max_cost is not None:
@@ -289,27 +312,28 @@ class CountBound:
         waiting: list[tuple[float | Fraction, int, int, Bounds]] = [(0, sum(lower), number, (lower, upper))]
         while waiting:
             bound, _, _, (model.program.lower, model.program.upper) = heappop(waiting)
-            if not earlier:
+            if not earlier_levels:
                 self.proved = max(self.proved, bound)
             solved = self._solve_node(model, objective, cutoff)
             if solved.x is None:
                 continue
             for lower, upper in self._child_bounds(model, solved.x, levels, is_better):
                 number += 1
-                executions = sum(lower[: self._size])
+                executions = sum(lower[: self._action_count])
                 heappush(waiting, (max(bound, solved.bound), executions, -number, (lower, upper)))
             if number > (PLANS.uncapped_nodes if max_cost is None else PLANS.nodes):
                 raise Stopped
 
-    def _equation_exceeds(self, measure: Measure, max_cost: int, earlier: Sequence[Level]) -> bool:
+    def _equation_exceeds(self, measure: Measure, max_cost: int, earlier_levels: Sequence[Level]) -> bool:
         """Return whether the state equation proves that plans cost more than ``max_cost`` by a measure.
 
-        Only plans as good as the incumbent by the levels in ``earlier`` are considered. The search branches
-        over counts, and adds landmarks that are violated.
+        Only plans as good as the incumbent by the levels in ``earlier_levels`` are considered. The search
+        branches over counts, adds violated conditions, and gives up after ``equation_nodes`` nodes. Without
+        ``earlier_levels``, the first node raises ``proved``.
         """
         costs = {a: cost for a, cost in enumerate(measure.costs) if cost}
         caps = [max(max_cost, 0) // cost if cost else None for cost in measure.costs]
-        equation = self._state_equation(earlier, caps)
+        equation = self._state_equation(earlier_levels, caps)
         program = equation.program
         waiting = [(list(program.lower), list(program.upper))]
         for number in range(PLANS.equation_nodes):
@@ -317,12 +341,12 @@ class CountBound:
                 return True
             program.set_bounds(waiting.pop())
             solved = self._solve_equation_node(equation, costs, max_cost)
-            if not earlier and not number:
+            if not earlier_levels and not number:
                 self._rounded_rows = list(equation.rounded_rows)
                 self.proved = max(self.proved, min(solved.bound, max_cost + 1))
             if solved.bound > max_cost:
                 continue
-            column = None if solved.x is None else most_fractional(solved.x[: self._size])
+            column = None if solved.x is None else most_fractional(solved.x[: self._action_count])
             if column is None or solved.x is None:
                 return False
             waiting += program.split_bounds(column, solved.x[column])
@@ -331,7 +355,7 @@ class CountBound:
     def _solve_equation_node(
         self, equation: StateEquation, costs: Mapping[int, int], max_cost: int
     ) -> Solved:
-        """Add rounded rows and violated landmarks to the state equation; return its solution."""
+        """Add rounded rows and violated conditions to the state equation; return its last solution."""
         while True:
             self._stop_if_expired()
             solved = equation.strengthen(costs, max_cost)
@@ -374,9 +398,10 @@ class CountBound:
         return model
 
     def _probe_actions(self, model: CountModel, objective: Mapping[int, int], cutoff: int) -> None:
-        """Find actions that cannot be executed twice below the cutoff, and bound their counts by 1.
+        """Find actions that cannot be executed twice at costs up to ``cutoff``, and bound their counts by 1.
 
-        This tightens the rows of their indicators. Violated landmarks are added first.
+        This tightens the rows of their indicators. At most ``probes`` actions are tried, and only those whose
+        indicators are too small in the relaxed solution. Violated landmarks are added first.
         """
         program, probed = model.program, set[int]()
         while len(probed) < PLANS.probes:
@@ -388,8 +413,8 @@ class CountBound:
                 continue
             loose = [
                 a
-                for a in range(self._size)
-                if solved.x[self._size + a] < min(1.0, solved.x[a]) - INTEGRALITY and a not in probed
+                for a in range(self._action_count)
+                if solved.x[self._action_count + a] < min(1.0, solved.x[a]) - INTEGRALITY and a not in probed
             ]
             if not loose:
                 return
@@ -412,24 +437,25 @@ class CountBound:
     ) -> Iterator[Bounds]:
         """Yield the bounds of the child nodes of a node with the relaxed solution ``x``.
 
-        If it has whole counts that violate nothing, ``is_better`` is called with them first. The children
-        then exclude only these counts. Raises :class:`BetterError` if ``is_better`` returns true.
+        If ``x`` has whole counts that violate nothing, ``is_better`` is called with them first. The children
+        then exclude only these counts. Raises :class:`BetterError` if ``is_better`` returns true. ``levels``
+        are as for :meth:`_search_counts`.
         """
         program = model.program
         column = most_fractional(x)
         if column is not None:
             yield from program.split_bounds(column, x[column])
             return
-        counts = {a: round(x[a]) for a in range(self._size) if round(x[a])}
-        idle = next((a for a in counts if not round(x[self._size + a])), None)
-        if idle is not None:  # unbounded, so that its indicator is not forced
-            yield program.with_bounds(idle, None, 0)
-            lower, upper = program.with_bounds(idle, 1, None)
-            lower[self._size + idle] = 1
+        counts = {a: round(x[a]) for a in range(self._action_count) if round(x[a])}
+        unforced_action = next((a for a in counts if not round(x[self._action_count + a])), None)
+        if unforced_action is not None:  # unbounded, so that its indicator is not forced
+            yield program.with_bounds(unforced_action, None, 0)
+            lower, upper = program.with_bounds(unforced_action, 1, None)
+            lower[self._action_count + unforced_action] = 1
             yield lower, upper
             return
         rounded_levels = [level for level in (*self._levels, *levels) if level.measure.exact is not None]
-        worse = [
+        violated_levels = [
             level
             for level in rounded_levels
             if (cost := _exact_cost(level, counts)) > level.cost or (cost == level.cost and level.strict)
@@ -442,16 +468,16 @@ class CountBound:
             lower[column] = 1
             yield lower, upper
             return
-        if worse:
-            yield from _bounds_around(program, x, model.class_columns(worse[0].measure))
+        if violated_levels:
+            yield from _bounds_around(program, x, model.class_columns(violated_levels[0].measure))
             return
         if is_better(counts):
             raise BetterError(counts)
-        yield from _bounds_around(program, x, range(self._size))
+        yield from _bounds_around(program, x, range(self._action_count))
 
     def _add_landmark(self, x: Sequence[float], model: CountModel) -> bool:
-        """Add a landmark that a solution of the model violates; return whether there is one."""
-        used = {a for a in range(self._size) if x[self._size + a] > INTEGRALITY}
+        """Add a landmark that the solution ``x`` of the model violates; return whether there is one."""
+        used = {a for a in range(self._action_count) if x[self._action_count + a] > INTEGRALITY}
         reached = {o for o, column in model.stock.items() if x[column] > INTEGRALITY}
         landmark = self._violated_landmark(used, reached, model.stock)
         if landmark is not None:
@@ -511,23 +537,23 @@ class CountBound:
     def _separate(self, x: Sequence[float], model: CountModel, at_root: bool) -> bool:
         """Add landmarks of the targets that an LP solution violates; return whether there are any.
 
-        Landmarks avoid actions with large LP values. At the root, further ones are tried: for each action of
-        the derivation, a landmark with none of its other actions. Without a derivation, no landmarks are
-        sought.
+        Landmarks avoid actions whose indicators have large values in the solution. At the root, further ones
+        are tried: for each action of the derivation, a landmark with none of its other actions. Without a
+        derivation, no landmarks are sought.
         """
-        derivation, size = self.derivation, self._size
+        derivation, action_count = self.derivation, self._action_count
         if not derivation:
             return False
         cutter = self._cutter_of_stock if model.stock else self._cutter
         if cutter.hopeless or not cutter.targets:
             return False
         cuts: dict[tuple[int, ...], tuple[int, ...]] = {}
-        keeps = [[a for a in derivation if a != gone] for gone in derivation]
+        kept_sets = [[a for a in derivation if a != gone] for gone in derivation]
         for number in range(PLANS.landmark_orders):
-            order = sorted(cutter.actions, key=lambda a: (-x[size + a], self._random.random()))
-            for keep in ((), *(keeps if at_root and number == 0 else ())):
+            order = sorted(cutter.actions, key=lambda a: (-x[action_count + a], self._random.random()))
+            for keep in ((), *(kept_sets if at_root and number == 0 else ())):
                 cut = cutter.cut(keep, order)
-                if cut is not None and sum(x[size + a] for a in cut.members) < 1 - INTEGRALITY:
+                if cut is not None and sum(x[action_count + a] for a in cut.members) < 1 - INTEGRALITY:
                     cuts.setdefault(cut.members, cut.objects)
             if cuts:
                 break
@@ -544,11 +570,11 @@ class CountBound:
         used: set[int],
         stock: Mapping[int, int],
     ) -> Landmark:
-        """Return a landmark for an object that is not reached, with a small cut that is grown from it.
+        """Return a landmark that no executed action satisfies, for an object that is not reached.
 
-        The cut grows by a missing precondition of each executed action (``used``) that would satisfy the
-        landmark. ``asks`` has the preconditions of actions, ``reached`` the objects reached, and ``stock``
-        the columns of initial copies.
+        Its cut is grown from the object. It grows by a missing precondition of each executed action
+        (``used``) that would satisfy the landmark. ``asks`` has the preconditions of actions, ``reached`` the
+        objects reached, and ``stock`` the columns of initial copies.
         """
         cut, stack, crossing = {o}, [o], dict[int, None]()
         while stack:
@@ -574,9 +600,9 @@ def _exact_cost(level: Level, counts: Mapping[int, int]) -> Fraction:
 
 
 def _bounds_around(program: WholeProgram, x: Sequence[float], columns: Sequence[int]) -> Iterator[Bounds]:
-    """Yield the bounds of child nodes that exclude the solution ``x``.
+    """Yield the bounds of child nodes that together exclude only a whole solution ``x``.
 
-    Together they allow all whole values of the ``columns`` except those in the solution.
+    They allow all whole values of the ``columns`` within the bounds of the program except those in ``x``.
     """
     lower, upper = list(program.lower), list(program.upper)
     for column in sorted(columns, key=lambda column: -x[column]):

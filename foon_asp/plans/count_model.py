@@ -23,8 +23,8 @@ from foon_asp.plans.whole_program import WholeProgram
 class CountModel:
     """The relaxation of counts: a linear program, and the conditions of its rows.
 
-    ``program``: the program. Column ``a`` is the count of action ``a``. Its indicator is that many columns
-    later as there are actions.
+    ``program``: the program. Column ``a`` is the count of action ``a``. Column ``a`` plus the number of
+    actions is the indicator of the action.
     ``conditions``: the condition of each row that states one, by row.
     ``stock``, ``items``: the columns of initial copies and of endless items by object, if they have costs.
 
@@ -33,7 +33,8 @@ class CountModel:
         measures: The measures of objectives.
         landmarks: The landmarks known so far.
         limits: Limits on weighted sums.
-        excluded_counts: No plan of the model executes each action as often as one of these counts say.
+        excluded_counts: A plan is excluded if it executes all actions at least as often as one of these
+            counts says.
         assumed_cap: An upper bound that is assumed for counts that have none. If ``None``, nothing is
             assumed, and each class of a measure with exact costs has a column.
         expired: Returns whether time is up.
@@ -50,16 +51,16 @@ class CountModel:
         expired: Callable[[], bool],
     ) -> None:
         """Build the program with the rows of all conditions."""
-        size, achievers_of = len(flows.asks), flows.achievers
+        action_count, achievers_of = len(flows.asks), flows.achievers
         self._flows = flows
-        self.program = program = WholeProgram(size, expired)
-        self._size, self._assumed_cap = size, assumed_cap
+        self.program = program = WholeProgram(action_count, expired)
+        self._action_count, self._assumed_cap = action_count, assumed_cap
         self.conditions: dict[int, Condition] = {}  # by row
-        for _ in range(size):
+        for _ in range(action_count):
             program.add_column(0, 1)  # whether an action is executed at all
-        self._indicator_rows = [program.add_open_row((size + a, a), 0) for a in range(size)]
-        for a in range(size):
-            program.add_row({a: 1, size + a: -1}, 0)
+        self._indicator_rows = [program.add_open_row((action_count + a, a), 0) for a in range(action_count)]
+        for a in range(action_count):
+            program.add_row({a: 1, action_count + a: -1}, 0)
         self._classes: dict[int, list[int]] = {}
         priced = any(measure.item for measure in measures)
         self.stock: dict[int, int] = {}
@@ -68,28 +69,28 @@ class CountModel:
         for o, change, least in flows.balances():
             self.conditions[program.add_row(*self._with_stock(o, change, least))] = Balance(o)
         for supply in flows.supplies:
-            row = {**flows.copy_changes(supply), size + supply.action: -supply.copies}
+            row = {**flows.copy_changes(supply), action_count + supply.action: -supply.copies}
             self.conditions[program.add_row(*self._with_stock(supply.object, row, 0))] = supply
         items = self.items = dict[int, int]()
-        for action in range(size):
-            indicator = size + action
+        for action in range(action_count):
+            indicator = action_count + action
             for o in (needed for needed in flows.asks[action] if needed not in flows.uses[action]):
-                achievers = {size + achiever: 1 for achiever in achievers_of.get(o, ())}
-                number = program.add_row(*self._with_stock(o, {**achievers, indicator: -1}, 0))
+                achievers = {action_count + achiever: 1 for achiever in achievers_of.get(o, ())}
+                row_number = program.add_row(*self._with_stock(o, {**achievers, indicator: -1}, 0))
                 if o in self.stock or not flows.start.get(o):  # otherwise an initial copy satisfies it
-                    self.conditions[number] = Landmark((), (), action, (o,))
+                    self.conditions[row_number] = Landmark((), (), action, (o,))
             for o in flows.items[action] if priced else ():
                 if o not in items:
                     items[o] = program.add_column(0, 1)
-                number = program.add_row({items[o]: 1, indicator: -1}, 0)
-                self.conditions[number] = Landmark((), (), action, (o,))
+                row_number = program.add_row({items[o]: 1, indicator: -1}, 0)
+                self.conditions[row_number] = Landmark((), (), action, (o,))
         for landmark in landmarks:
             self.add_landmark(landmark)
-        for i, (weights, limit, at_least, used) in enumerate(limits):
-            first, sign = size if used else 0, 1 if at_least else -1
-            row = {first + a: sign * weight for a, weight in weights.items()}
+        for i, (weights, limit, at_least, counts_once) in enumerate(limits):
+            first_column, sign = action_count if counts_once else 0, 1 if at_least else -1
+            row = {first_column + a: sign * weight for a, weight in weights.items()}
             self.conditions[program.add_row(row, sign * limit)] = Sum(i)
-            for a, weight in weights.items() if not at_least and not used else ():
+            for a, weight in weights.items() if not at_least and not counts_once else ():
                 program.cap(a, max(limit, 0) // weight)
         for measure in measures:
             if measure.exact is not None and assumed_cap is None:
@@ -101,12 +102,12 @@ class CountModel:
         self.tighten()
 
     def _count_indicator(self, action: int, count: int) -> int:
-        """Return the column that indicates whether an action is executed at least ``count`` times.
+        """Return the column that is 1 if an action is executed at least ``count`` times, and else 0.
 
-        The column and its rows are added at the first call.
+        Unless ``count`` is 1, the column and its rows are added at the first call.
         """
         if count == 1:
-            return self._size + action
+            return self._action_count + action
         if (action, count) not in self._count_indicators:
             column = self.program.add_column(0, 1)
             self.program.add_row({action: 1, column: -count}, 0)
@@ -117,9 +118,10 @@ class CountModel:
         return self._count_indicators[action, count][0]
 
     def unforced_count(self, counts: Counts, x: Sequence[float]) -> tuple[int, int, int] | None:
-        """Return the action, the count and the column of an indicator of a count that is wrong in a solution.
+        """Return an indicator of a count that is 0 in ``x`` although ``counts`` reach the count.
 
-        It is 0 in ``x`` although the action is executed as often. ``None`` if every such indicator is right.
+        It is given by its action, its count and its column. Return ``None`` if there is no such indicator.
+        Indicators of the count 1 are not looked at.
         """
         for (action, count), (column, _) in self._count_indicators.items():
             if action in counts and counts[action] >= count and not round(x[column]):
@@ -127,9 +129,10 @@ class CountModel:
         return None
 
     def _with_stock(self, o: int, row: dict[int, int], least: int) -> tuple[dict[int, int], int]:
-        """Return a row and its least sum, with the initial copies of an object.
+        """Return a row and its least sum, changed so that the initial copies of an object count.
 
-        If initial copies have a cost, they are a column of the row. Otherwise they lower the least sum.
+        If the object has a column of initial copies, this column is added to the row. Otherwise, the copies
+        are subtracted from the least sum.
         """
         if o in self.stock:
             return {**row, self.stock[o]: 1}, least
@@ -149,34 +152,39 @@ class CountModel:
     def class_columns(self, measure: Measure) -> list[int]:
         """Return the columns of the classes of a measure, ascending by class.
 
-        They exist only if no cap is assumed.
+        Raises ``KeyError`` if the measure has none: its costs are exact, or a cap is assumed.
         """
         return self._classes[id(measure)]
 
     def add_landmark(self, landmark: Landmark) -> None:
-        """Add the row of a landmark; add nothing if an initial copy without cost may satisfy it."""
+        """Add the row of a landmark; add nothing if an initial copy may satisfy it that has no column."""
         members, stock, action, _ = landmark
         if not self.stock.keys() >= set(stock):
             return
-        row = {self._size + member: 1 for member in members} | {self.stock[o]: 1 for o in stock}
+        row = {self._action_count + member: 1 for member in members} | {self.stock[o]: 1 for o in stock}
         if action is None:
-            number = self.program.add_row(row, 1)
+            row_number = self.program.add_row(row, 1)
         else:
-            number = self.program.add_row({**row, self._size + action: -1}, 0)
-        self.conditions[number] = landmark
+            row_number = self.program.add_row({**row, self._action_count + action: -1}, 0)
+        self.conditions[row_number] = landmark
 
     def tighten(self) -> None:
-        """Update the rows that tie indicators to counts, by the upper bounds of counts."""
+        """Adapt the rows that force indicators up to 1 to the present upper bounds of counts.
+
+        The row of an indicator whose count has no upper bound is made empty.
+        """
         program = self.program
         for action, row in enumerate(self._indicator_rows):
             max_count = self._max_count(action)
-            program.change_row(row, {} if max_count is None else {self._size + action: max_count, action: -1})
+            program.change_row(
+                row, {} if max_count is None else {self._action_count + action: max_count, action: -1}
+            )
         for (action, count), (column, row) in self._count_indicators.items():
             max_count = self._max_count(action)
             program.change_row(row, {} if max_count is None else {column: max_count - count + 1, action: -1})
 
     def _max_count(self, action: int) -> int | None:
-        """Return the upper bound of an action's count, perhaps the assumed one; ``None`` if unbounded."""
+        """Return the upper bound of an action's count, or else the assumed cap; ``None`` without both."""
         upper = self.program.upper[action]
         return self._assumed_cap if upper is None else upper
 
@@ -197,7 +205,7 @@ class CountModel:
     def add_level(self, level: Level) -> None:
         """Add the row of a level: the cost is at most its ``max_cost``.
 
-        The counts of single actions are capped, too.
+        This also caps the counts of single actions (:meth:`cap_counts`).
         """
         costs = self.objective(level.measure)
         row = self.program.add_row({column: -cost for column, cost in costs.items()}, -level.max_cost)
@@ -205,7 +213,7 @@ class CountModel:
         self.cap_counts(level.measure, level.max_cost)
 
     def limit_cost(self, measure: Measure, solution: Sequence[float]) -> None:
-        """Add a row: the cost by a measure is at most that of a solution."""
+        """Add a row: the cost by a measure is at most that of a solution, rounded to whole values."""
         costs = self.objective(measure)
         max_cost = sum(cost * round(solution[column]) for column, cost in costs.items())
         self.program.add_row({column: -cost for column, cost in costs.items()}, -max_cost)

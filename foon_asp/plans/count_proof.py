@@ -30,7 +30,7 @@ class Weighted(NamedTuple):
 
 
 class Split(NamedTuple):
-    """A branching of a proof: one proof for values of a column up to ``max_count``, one for values above."""
+    """A branching of a proof: one proof for values of a column up to ``max_count``, one for those above."""
 
     column: int
     max_count: int
@@ -49,7 +49,7 @@ class Claim(NamedTuple):
     ``item``: the cost of each endless item, and of each initial copy that is taken.
     ``least``: the claimed least cost; ``None`` for the claim that there is no plan. All costs are then 0.
     ``parts``: if not ``None``, the costs of plans are multiples of ``1 / parts``.
-    ``caps``: upper bounds on the count of each action in plans that cost less; ``None`` is no bound.
+    ``caps``: an upper bound on the count of each action in plans that cost less; ``None`` for no bound.
     """
 
     order: Lexicographic
@@ -69,11 +69,13 @@ class PlanProver(CountBound):
     def prove_claim(
         self, claim: Claim, measure: Measure, kept_levels: Sequence[Level]
     ) -> tuple[CountProof, Vector | None, Mapping[int, int]] | None:
-        """Return a proof of a claim or of a weaker claim, the bound that is proved, and objects by column.
+        """Return a proof of a claim or of a weaker claim, the bound that it proves, and objects by column.
 
-        The last has the object of each column for endless items or initial copies, if these have costs.
-        Returns ``None`` if nothing is proved. ``measure`` is the objective of the claim. Plans that are worse
-        than the incumbent by a level in ``kept_levels`` are excluded from the claim.
+        The bound is ``None`` if the claim is that there is no plan. The last value has the object of each
+        column for endless items or initial copies, if these have costs. Return ``None`` if nothing is proved.
+
+        ``measure`` is the objective of the claim. Plans that are worse than the incumbent by a level in
+        ``kept_levels`` are excluded from the claim.
         """
         self._claim, self._least, self._leaves = claim, claim.least, 0
         floats = [claim.order.approximate(cost)[0] for cost in claim.costs]
@@ -96,14 +98,15 @@ class PlanProver(CountBound):
             return None
         return proof, self._least, self._columns
 
-    def require(self, landmarks: Sequence[Landmark]) -> None:
+    def add_known_landmarks(self, landmarks: Sequence[Landmark]) -> None:
         """Add landmarks that all plans are known to satisfy."""
         self._landmarks += landmarks
 
     def _prove_node(self, model: CountModel, depth: int) -> CountProof:
         """Return the proof of a node of the branching, whose bounds of columns ``model`` has.
 
-        If the node proves less than the claim, the claim is lowered to the bound of the node.
+        If the node proves less than the claim, the claim is lowered to the bound of the node. If it proves
+        nothing, ``_failed`` is set.
         """
         program = model.program
         model.tighten()
@@ -133,17 +136,17 @@ class PlanProver(CountBound):
 
         The bounds of the model are restored at the end.
         """
-        program, size = model.program, self._size
+        program, action_count = model.program, self._action_count
         lower, upper = list(program.lower), list(program.upper)
-        is_count = column < size
+        is_count = column < action_count
         program.lower[column] = max_count + 1
         if is_count:
-            program.lower[size + column] = 1
+            program.lower[action_count + column] = 1
         above = self._prove_node(model, depth + 1)
         program.lower, program.upper = list(lower), list(upper)
         program.upper[column] = max_count
         if is_count and not max_count:
-            program.upper[size + column] = 0
+            program.upper[action_count + column] = 0
         up_to = self._prove_node(model, depth + 1)
         program.lower, program.upper = lower, upper
         return Split(column, max_count, up_to, above)
@@ -151,21 +154,24 @@ class PlanProver(CountBound):
     def _branching_column(self, model: CountModel, x: Sequence[float]) -> tuple[int, int] | None:
         """Return a column to branch on, and its maximum in the lower branch; ``None`` if all are whole.
 
-        Counts come first whose indicators are smaller than they should be.
+        A count whose indicator is too small for it comes first. Otherwise, the column is the one with the
+        most fractional value.
         """
-        program, size = model.program, self._size
-        for a in range(size):
+        program, action_count = model.program, self._action_count
+        for a in range(action_count):
             upper = program.upper[a]
             if (
-                x[size + a] < min(1.0, x[a]) - INTEGRALITY
+                x[action_count + a] < min(1.0, x[a]) - INTEGRALITY
                 and not program.lower[a]
                 and (upper is None or upper > 1)
             ):
                 return a, max(1, math.floor(x[a] + INTEGRALITY))
-        columns = [*range(size), *self._columns]
-        halves = [(abs(x[column] - math.floor(x[column]) - 0.5), column) for column in columns]
-        half = min((candidate for candidate in halves if candidate[0] < 0.5 - INTEGRALITY), default=None)
-        return None if half is None else (half[1], math.floor(x[half[1]]))
+        columns = [*range(action_count), *self._columns]
+        distances = [(abs(x[column] - math.floor(x[column]) - 0.5), column) for column in columns]
+        most_fractional = min(
+            (candidate for candidate in distances if candidate[0] < 0.5 - INTEGRALITY), default=None
+        )
+        return None if most_fractional is None else (most_fractional[1], math.floor(x[most_fractional[1]]))
 
     def _give_up(self, best: tuple[Vector, object] | None) -> None:
         """Lower the claim to the bound of the ``best`` weights at a node, or note that nothing is proved.
@@ -178,12 +184,12 @@ class PlanProver(CountBound):
         self._least = min(self._least, self._round_up(best[0]), key=cmp_to_key(self._claim.order.compare))
 
     def _round_up(self, bound: Vector) -> Vector:
-        """Return a bound rounded up to the next cost that a plan can have."""
+        """Return a bound, rounded up to a multiple of ``1 / parts`` if the claim has ``parts``."""
         parts = self._claim.parts
         return bound if parts is None else tuple(Fraction(math.ceil(b * parts), parts) for b in bound)
 
     def _is_enough(self, bound: Vector) -> bool:
-        """Return whether a bound, rounded up, proves the claim."""
+        """Return whether a bound, rounded up, proves the claim; that there is no plan, if it is above 0."""
         order = self._claim.order
         if self._least is None:
             return order.sign(bound) > 0
@@ -195,12 +201,14 @@ class PlanProver(CountBound):
         return Weighted([(model.conditions[row], weight) for row, weight in sorted(weights.items())])
 
     def _candidate_weights(self, model: CountModel, relaxed: Relaxation) -> "list[dict[int, Vector]]":
-        """Return candidate weights of rows, each by row: rounded duals, and perhaps exact duals of the basis.
+        """Return candidates for the weights of rows, by row: rounded duals, and perhaps exact duals.
 
-        If the relaxation is infeasible, they are a Farkas combination, scaled to reach the claim.
+        Exact duals are added if the relaxation is close to the claim and cannot be rounded up. If the
+        relaxation is infeasible, the only candidate is a Farkas combination, scaled to reach the claim; none
+        if no such combination is found.
         """
         claim = self._claim
-        first = claim.order.levels[0]
+        rates = claim.order.levels[0]
         one = (Fraction(1), *claim.order.zero[1:])
         scale = claim.order.approximate(one)[0]
         floats = relaxed.weights
@@ -226,8 +234,8 @@ class PlanProver(CountBound):
         candidates = [self._rounded_weights(model, floats, parts, one) for parts in PARTS]
         value = sum(cost * relaxed.x[column] for column, cost in self._objective.items())
         least = 0.0 if self._least is None else claim.order.approximate(self._least)[0]
-        close = value > least - INTEGRALITY * max(1.0, abs(least))
-        if close and (first is not None or claim.parts is None):
+        is_close = value > least - INTEGRALITY * max(1.0, abs(least))
+        if is_close and (rates is not None or claim.parts is None):
             candidates += self._exact_weights(model, relaxed)
         return candidates
 
@@ -241,7 +249,7 @@ class PlanProver(CountBound):
     def _exact_weights(self, model: CountModel, relaxed: Relaxation) -> "list[dict[int, Vector]]":
         """Return the exact duals of a basis, which make its reduced costs 0, as a list of one candidate.
 
-        Empty if the basis is singular. Weights below 0 are omitted.
+        Return an empty list if the basis is singular. Weights that are not above 0 are omitted.
         """
         columns, tight = set(relaxed.columns), relaxed.rows
         matrix: dict[int, dict[int, Fraction]] = {column: {} for column in sorted(columns)}
@@ -259,18 +267,18 @@ class PlanProver(CountBound):
         return [{row: w for row, w in solved.items() if row in model.conditions and sign(w) > 0}]
 
     def _column_cost(self, column: int) -> Vector:
-        """Return the cost of a column; columns other than counts, items and initial copies cost 0."""
+        """Return the cost of a column: of an action, an item or an initial copy; others cost 0."""
         claim = self._claim
-        if column < self._size:
+        if column < self._action_count:
             return claim.costs[column]
         return claim.item if column in self._columns else claim.order.zero
 
     def _bound(self, model: CountModel, weights: Mapping[int, Vector], free: bool = False) -> Vector | None:
         """Return the bound that weights of rows prove for the current node; ``None`` if they prove none.
 
-        With ``free``, all costs are 0.
+        With ``free``, all costs are taken to be 0.
         """
-        program, size, order = model.program, self._size, self._claim.order
+        program, action_count, order = model.program, self._action_count, self._claim.order
         loads: dict[int, list[Vector]] = {}
         terms: list[Vector] = []
         for row, weight in weights.items():
@@ -285,10 +293,10 @@ class PlanProver(CountBound):
             cost = zero if free else self._column_cost(column)
             return subtract(cost, order.total(loads[column])) if column in loads else cost
 
-        for column in (*range(size), *self._columns):
+        for column in (*range(action_count), *self._columns):
             low, high = program.lower[column], program.upper[column]
-            once = reduced_cost(size + column) if column < size else zero
-            if column not in loads and size + column not in loads and not low:
+            once = reduced_cost(action_count + column) if column < action_count else zero
+            if column not in loads and action_count + column not in loads and not low:
                 continue
             per_execution = reduced_cost(column)
             ends = [zero] if low == 0 else []

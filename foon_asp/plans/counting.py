@@ -26,14 +26,14 @@ from foon_asp.problem.costs import Costs
 
 
 class _ManyError(Exception):
-    """Raised if too many counts have no order, so that clingo has to search all of them at once."""
+    """Raised if orders of too many counts were searched, so that clingo has to search all counts at once."""
 
 
 class Counting:
     """The counts of executions of the units of a question, and the search for their order.
 
     Counts are by action: action ``a`` is the unit ``units[a]``. ``bound`` is the branch and bound over
-    counts.
+    counts. The incumbent is that of the question.
     """
 
     def __init__(self, question: PlanQuestion, units: list[int]) -> None:
@@ -77,31 +77,32 @@ class Counting:
     def _compute_measure(self, objective: Objective) -> Measure:
         """Return the measure of an objective over the units.
 
-        Costs are multiplied by a common factor. If this does not make them whole, they are rounded down, and
-        the measure also has exact costs. If the objective multiplies rates, costs are rounded logarithms.
+        Costs are multiplied by a common factor. If this does not make them whole, they are rounded down,
+        items cost nothing, and the measure also has exact costs. If the objective multiplies rates, costs are
+        rounded logarithms, and the exact cost is the negative product of the rates.
         """
-        row, figures = objective.row, self._unit_costs(objective)
+        row, unit_costs = objective.row, self._unit_costs(objective)
         if multiplies(objective):
-            classes = _cost_classes(figures, Fraction(1))
+            classes = _cost_classes(unit_costs, Fraction(1))
 
             def product(counts: Mapping[int, int]) -> Fraction:
                 """Return the negative product of the rates of executions."""
-                return -math.prod((figures[a] ** n for a, n in counts.items()), start=Fraction(1))
+                return -math.prod((unit_costs[a] ** n for a, n in counts.items()), start=Fraction(1))
 
-            return Measure([self._rate_scale.weights[rate] for rate in figures], 0, product, classes)
+            return Measure([self._rate_scale.weights[rate] for rate in unit_costs], 0, product, classes)
         scale = self._cost_scale(objective)
-        costs = [math.floor(scale * figure) for figure in figures]
-        if all(cost == scale * figure for cost, figure in zip(costs, figures, strict=True)):
+        costs = [math.floor(scale * unit_cost) for unit_cost in unit_costs]
+        if all(cost == scale * unit_cost for cost, unit_cost in zip(costs, unit_costs, strict=True)):
             return Measure(costs, row.item)
 
         def total(counts: Mapping[int, int]) -> Fraction:
             """Return the sum of the exact costs of executions."""
-            return sum((figures[a] * n for a, n in counts.items()), start=Fraction(0))
+            return sum((unit_costs[a] * n for a, n in counts.items()), start=Fraction(0))
 
-        return Measure(costs, 0, total, _cost_classes(figures, Fraction(0)))
+        return Measure(costs, 0, total, _cost_classes(unit_costs, Fraction(0)))
 
     def _unit_costs(self, objective: Objective) -> list[Fraction]:
-        """Return the exact cost, or rate, of each action by an objective; cached."""
+        """Return the exact cost of each action by an objective, or its rate for ``success``; cached."""
         if objective not in self._known_unit_costs:
             self._known_unit_costs[objective] = [
                 Fraction(self._problem.figure(objective, unit)) for unit in self.units
@@ -124,26 +125,33 @@ class Counting:
     def _cost_scale(self, objective: Objective) -> Fraction:
         """Return the factor by which costs are multiplied before they are rounded down.
 
-        It makes all costs whole if the greatest one then stays small.
+        It makes all costs whole if the greatest cost is then at most ``exact_cost``. Otherwise, it makes the
+        greatest cost ``cost_steps``.
         """
-        figures = self._unit_costs(objective)
-        common = math.lcm(*(figure.denominator for figure in figures))
-        greatest = max(figures, default=Fraction(0))
+        unit_costs = self._unit_costs(objective)
+        common = math.lcm(*(unit_cost.denominator for unit_cost in unit_costs))
+        greatest = max(unit_costs, default=Fraction(0))
         return Fraction(common) if common * greatest <= PLANS.exact_cost else PLANS.cost_steps / greatest
 
     def level(self, objective: Objective, costs: Costs) -> Level:
-        """Return the level of an objective for a plan with these costs."""
+        """Return the condition that a plan is as good as these costs by an objective."""
         return self._level_at(objective, Fraction(costs.measure(objective)))
 
     def _level_below(self, objective: Objective, cost: int | Fraction) -> Level:
-        """Return the level of plans that cost less than ``cost`` by an objective."""
+        """Return the condition that a plan costs less than ``cost`` by an objective.
+
+        For ``success``, ``cost`` is a rate, and the rate of the plan has to be above it.
+        """
         level = self._level_at(objective, Fraction(cost))
         if level.measure.exact is not None:
             return level._replace(strict=True)
         return level._replace(max_cost=math.ceil(level.cost) - 1)
 
     def _level_at(self, objective: Objective, cost: Fraction) -> Level:
-        """Return the level of plans that cost at most ``cost`` by an objective."""
+        """Return the condition that a plan costs at most ``cost`` by an objective.
+
+        For ``success``, ``cost`` is a rate, and the plan has to have at least this rate.
+        """
         measure = self.measure(objective)
         if multiplies(objective):
             return Level(measure, -cost, self._rate_scale.weigh(cost))
@@ -155,9 +163,9 @@ class Counting:
     def prove(self) -> None:
         """Prove that no plan is better than the incumbent.
 
-        After many counts without an order, clingo searches all counts at once, if these have small bounds.
-        Raises :class:`BetterError` if a plan is better; it is the incumbent then. Raises :class:`Stopped` if
-        time is up.
+        After many counts without a better plan, clingo searches all counts at once, if these have small
+        bounds. Raises :class:`BetterError` if a plan is better, which is then the incumbent. Raises
+        :class:`Stopped` if nothing is proved.
         """
         assert self._question.best is not None
         plan, costs = self._question.best
@@ -182,34 +190,36 @@ class Counting:
     def _split_costs(self, objective: Objective, plan: Plan) -> tuple[Fraction, list[Level]] | None:
         """Split costs that are too large for exact counting into two levels: the large costs and all others.
 
-        The first level has the large costs, as multiples of their greatest common divisor, the step. The
-        small costs of the incumbent sum up to less than a step. So a plan with greater large costs is never
-        better. Returns the step and the levels; ``None`` if costs need no such levels, or cannot be split.
+        The first level has the large costs, as multiples of their greatest common divisor, the *step*. The
+        small costs of ``plan`` sum up to less than a step. So a plan with greater large costs is never
+        better. Return the step and the levels. Return ``None`` if costs need no such levels, or cannot be
+        split so.
         """
         if multiplies(objective) or objective.row.item or self.measure(objective).exact is None:
             return None
-        figures = self._unit_costs(objective)
-        common = math.lcm(*(figure.denominator for figure in figures))
-        costs = [int(common * figure) for figure in figures]
+        unit_costs = self._unit_costs(objective)
+        common = math.lcm(*(unit_cost.denominator for unit_cost in unit_costs))
+        costs = [int(common * unit_cost) for unit_cost in unit_costs]
         step = math.gcd(*(cost for cost in costs if cost > PLANS.exact_cost))
-        counts = Counter(plan)
-        executed = [counts[unit] for unit in self.units]
+        counts_by_unit = Counter(plan)
+        executed = [counts_by_unit[unit] for unit in self.units]
         levels = []
-        for large in (True, False):
-            of_level = [
-                (cost // step if large else cost) * ((cost > PLANS.exact_cost) is large) for cost in costs
+        for is_large in (True, False):
+            level_costs = [
+                (cost // step if is_large else cost) * ((cost > PLANS.exact_cost) is is_large)
+                for cost in costs
             ]
-            total = sum(cost * n for cost, n in zip(of_level, executed, strict=True))
-            if max(of_level) > PLANS.exact_cost or (not large and total >= step):
+            total = sum(cost * n for cost, n in zip(level_costs, executed, strict=True))
+            if max(level_costs) > PLANS.exact_cost or (not is_large and total >= step):
                 return None
-            levels.append(Level(Measure(of_level), Fraction(total), total))
+            levels.append(Level(Measure(level_costs), Fraction(total), total))
         return Fraction(step, common), levels
 
     def prove_infeasible(self) -> bool:
         """Try all counts to prove that there is no plan; return whether it is proved.
 
         If a plan is found, it becomes the incumbent, and the result is ``False``. Raises :class:`Stopped` if
-        neither is decided.
+        nothing is decided.
         """
         try:
             self.bound.prove_infeasible(self.measure(Objective.UNITS), self._is_better)
@@ -220,8 +230,8 @@ class Counting:
     def proved_bounds(self) -> dict[Objective, int | Fraction]:
         """Return the proved lower bound of the first objective, as a dictionary with this objective only.
 
-        Empty if nothing is proved, or if the objective multiplies rates. Costs are rounded down, so a bound
-        on rounded costs is valid.
+        It is empty if nothing is proved, or if the objective multiplies rates. Costs are rounded down, so a
+        bound on rounded costs is valid.
         """
         objective = self._question.levels[0]
         if self.bound.proved <= 0 or multiplies(objective):
@@ -230,10 +240,11 @@ class Counting:
         return {objective: int(least) if objective.row.whole else least}
 
     def _prove_with_clingo(self, level: Level) -> bool:
-        """Try to prove with clingo that no plan is better, if the counts of better plans have small bounds.
+        """Try to prove with clingo that no plan is better; return whether it is proved.
 
-        Returns whether it is proved. Raises :class:`BetterError` if a plan is better; it is the incumbent
-        then.
+        Nothing is tried unless the counts of plans that satisfy ``level`` have small bounds, and all
+        objectives have whole costs. Raises :class:`BetterError` if a plan is better, which is then the
+        incumbent.
         """
         caps = [cap for cap in self.bound.max_counts(level) if cap is not None]
         if len(caps) < len(self.units) or sum(caps) > PLANS.clingo_executions:
@@ -246,9 +257,9 @@ class Counting:
         return run.exhausted and run.units is not None
 
     def _is_better(self, counts: Counts) -> bool:
-        """Make some order of the counts the incumbent if it is a better plan; return whether it is.
+        """Search for an order of counts; make it the incumbent if it is a better plan; return whether it is.
 
-        Raises :class:`_ManyError` if too many orders were sought since the proof began.
+        Raises :class:`_ManyError` if too many orders were sought since the proof began, unless amounts count.
         """
         self._orders_sought += 1
         if self._orders_sought > PLANS.unordered_counts and not self._problem.counts_amounts:
@@ -257,9 +268,11 @@ class Counting:
         return plan is not None and self._question.try_incumbent(plan)
 
     def find_order(self, counts: Counts) -> Plan | None:
-        """Return a plan that executes each action as often as counted; ``None`` if no order runs.
+        """Return a plan that executes each action as often as counted; ``None`` if there is none.
 
-        Raises :class:`Stopped` if neither is decided.
+        Such a plan keeps to the user's rules. clingo searches for it if amounts do not count, and either
+        ``kitchen`` is an objective or the other search decides nothing. Raises :class:`Stopped` if nothing is
+        decided.
         """
         if self._problem.counts_amounts:
             return self._bulk_plan(counts)
@@ -272,9 +285,11 @@ class Counting:
         return self._find_plan({a: (n, n) for a, n in counts.items()})
 
     def find_plan_beyond(self, counts: Counts) -> Plan | None:
-        """Return a good plan with at most a few more executions of each action than counted, found by clingo.
+        """Search with clingo for the best plan with at most a few more executions per action than counted.
 
-        ``None`` if there is none. ``None``, too, if amounts count, since clingo does not count copies.
+        One more is tried first, then twice as many, up to ``extra_executions``. Return ``None`` if there is
+        no such plan, or if amounts count, since clingo does not count copies. Raises :class:`Stopped` if
+        clingo decides nothing.
         """
         if self._problem.counts_amounts:
             return None
@@ -289,8 +304,8 @@ class Counting:
     def _bulk_plan(self, counts: Counts) -> Plan | None:
         """Return a plan with these counts, built from runs of one action each; ``None`` if there is none.
 
-        With the objective ``kitchen``, it takes as few initial copies as possible. Raises :class:`Stopped` if
-        neither is decided.
+        It keeps to the user's rules. With the objective ``kitchen``, it takes as few initial copies as
+        possible. Raises :class:`Stopped` if nothing is decided.
         """
         flows, question = self._flows, self._question
         if not self._keeps_to_rules(counts):
@@ -299,7 +314,7 @@ class Counting:
             runs = bulk_order(flows, counts, flows.start, lambda: question.deadline.passed)
             return None if runs is None else plan_of(self.units, runs)
         least_stock = tuple(sorted(least_copies(flows, counts).items()))
-        waiting, seen = [(sum(n for _, n in least_stock), least_stock)], {least_stock}
+        waiting, known_stocks = [(sum(n for _, n in least_stock), least_stock)], {least_stock}
         for _ in range(PLANS.stocks):
             if not waiting:
                 return None
@@ -311,8 +326,8 @@ class Counting:
                 return plan_of(self.units, runs)
             for index, (o, n) in enumerate(stock):
                 larger = (*stock[:index], (o, n + 1), *stock[index + 1 :])
-                if larger not in seen:
-                    seen.add(larger)
+                if larger not in known_stocks:
+                    known_stocks.add(larger)
                     heappush(waiting, (total + 1, larger))
         raise Stopped
 
@@ -334,9 +349,9 @@ class Counting:
             for a, n in counts.items()
             if (number := problem.network.unit_number(self.units[a])) is not None
         )
-        added = program.files[len(ENCODING_FILES) :]
+        user_files = program.files[len(ENCODING_FILES) :]
         run = clingo_run.run(
-            added, text, program.arguments, self._question.deadline, "ignore", endless=program.endless
+            user_files, text, program.arguments, self._question.deadline, "ignore", endless=program.endless
         )
         if not run.exhausted and run.units is None:
             raise Stopped
@@ -362,27 +377,29 @@ class Counting:
     def _run_clingo(self, times: Mapping[int, tuple[int, int]], best: bool) -> Run:
         """Run clingo for a plan with the least and greatest ``times`` of each action; return the run.
 
-        With ``best``, it searches for the best plan. The run's time and statistics are added to the question.
+        With ``best``, it searches for the best plan, within the bounds of the question. Otherwise, only the
+        items taken are minimized, if ``kitchen`` is an objective. The time of the run is added to the
+        question, and its statistics are reported.
         """
         from foon_asp.encoding import clingo_run, fact_writer  # noqa: PLC0415 (takes clingo along)
         from foon_asp.encoding.cost_scales import Scales  # noqa: PLC0415
 
         question, problem = self._question, self._problem
         units = [self.units[a] for a in times]
-        number = problem.network.unit_number
+        unit_number = problem.network.unit_number
         # if counts are fixed, only the number of initial copies can be minimized
-        wanted = question.levels if best else [o for o in question.levels if o is Objective.KITCHEN]
+        minimized = question.levels if best else [o for o in question.levels if o is Objective.KITCHEN]
         looked_at = None if question.program.is_built_in else question.program.looked_at
-        scales = Scales(problem, units, wanted) if best or looked_at is not None else None
+        scales = Scales(problem, units, minimized) if best or looked_at is not None else None
         text = fact_writer.write_facts(problem, units, scales, looked_at)
-        text += fact_writer.write_times({number(self.units[a]): bounds for a, bounds in times.items()})
-        text += fact_writer.write_objectives(wanted)
+        text += fact_writer.write_times({unit_number(self.units[a]): bounds for a, bounds in times.items()})
+        text += fact_writer.write_objectives(minimized)
         files = question.program.files
         if best and scales is not None and (question.below or question.incomparable):
             # bounds by fractions are enforced by counts alone
             text += fact_writer.write_below([{o: cost} for o, cost in question.below if o.row.whole], scales)
             text += fact_writer.write_avoided_plans(
-                [{number(u): n for u, n in plan.items()} for plan in question.incomparable]
+                [{unit_number(u): n for u, n in plan.items()} for plan in question.incomparable]
             )
             files = (*files, question_encoding("bounded_plans.lp"))
         run = clingo_run.run(
@@ -390,7 +407,7 @@ class Counting:
             text,
             question.program.arguments,
             question.deadline,
-            "opt" if wanted else "ignore",
+            "opt" if minimized else "ignore",
             predicates=[("times", 2), ("_after", 4)],
             endless=question.program.endless,
         )
@@ -402,14 +419,17 @@ class Counting:
         return run
 
 
-def _cost_classes(figures: Sequence[Fraction], idle: Fraction) -> list[int]:
-    """Return the rank of each cost among the different costs; -1 for the cost ``idle``."""
-    numbers = {figure: number for number, figure in enumerate(sorted(set(figures)))}
-    return [-1 if figure == idle else numbers[figure] for figure in figures]
+def _cost_classes(unit_costs: Sequence[Fraction], neutral: Fraction) -> list[int]:
+    """Return the rank of each cost among the different costs, from 0; -1 for the cost ``neutral``."""
+    ranks = {unit_cost: rank for rank, unit_cost in enumerate(sorted(set(unit_costs)))}
+    return [-1 if unit_cost == neutral else ranks[unit_cost] for unit_cost in unit_costs]
 
 
 def order_that_runs(problem: Problem, units: Sequence[int]) -> Plan | None:
-    """Return units, repeats included, in an executable order; ``None`` if no order runs."""
+    """Return units, repeats included, in an order that executes; ``None`` if no order does.
+
+    Raises :class:`Stopped` if the search decides nothing.
+    """
     question = PlanQuestion(problem, (Objective.UNITS,), Settings(), Reporter())
-    counted = Counter(units)
-    return Counting(question, list(counted)).find_order(dict(enumerate(counted.values())))
+    counts_by_unit = Counter(units)
+    return Counting(question, list(counts_by_unit)).find_order(dict(enumerate(counts_by_unit.values())))

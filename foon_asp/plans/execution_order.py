@@ -23,13 +23,14 @@ def bulk_order(
     """Return runs that execute each action as often as counted; ``None`` if there is no such order.
 
     ``start`` has the initial copies by object. ``expired`` returns whether time is up. Raises
-    :class:`Stopped` if the search neither finds runs nor proves that there are none.
+    :class:`Stopped` if the search finds no runs and does not prove that there are none. Runs are as long as
+    possible; if this finds no order of few executions, single executions are tried.
     """
     if not _may_have_order(flows, counts, start):
         return None
-    runs = _Search(flows, counts, start, expired, single=False).find_runs()
+    runs = _OrderSearch(flows, counts, start, expired, single=False).find_runs()
     if runs is None and sum(counts.values()) <= PLANS.single_executions:
-        search = _Search(flows, counts, start, expired, single=True)
+        search = _OrderSearch(flows, counts, start, expired, single=True)
         runs = search.find_runs()
         if runs is None and search.is_exhausted:
             return None
@@ -39,7 +40,7 @@ def bulk_order(
 
 
 def least_copies(flows: Flows, counts: Counts) -> dict[int, int]:
-    """Return, for each object with initial copies, a lower bound on the copies that any order needs of it."""
+    """Return for each object in ``flows.start`` a lower bound on the initial copies that orders need."""
     change = Counter({o: -n for o, n in flows.targets.items()})
     required = Counter[int]()
     for action, times in counts.items():
@@ -56,7 +57,8 @@ def least_copies(flows: Flows, counts: Counts) -> dict[int, int]:
 def _may_have_order(flows: Flows, counts: Counts, start: Mapping[int, int]) -> bool:
     """Return whether counts satisfy two conditions that every order needs.
 
-    Each action can be reached if nothing is consumed, and enough copies remain in the end.
+    If nothing is consumed, each action can be executed. In the end, no number of copies is below 0, and those
+    of targets remain.
     """
     copies, waiting = Counter(start), set(counts)
     grown = True
@@ -75,7 +77,7 @@ def _may_have_order(flows: Flows, counts: Counts, start: Mapping[int, int]) -> b
     return all(copies[o] >= n for o, n in flows.targets.items())
 
 
-class _Search:
+class _OrderSearch:
     """A depth-first search for an order of executions.
 
     ``single``: whether to branch over single executions, in place of runs.
@@ -106,7 +108,7 @@ class _Search:
         return self._steps_left > 0
 
     def find_runs(self) -> list[Run] | None:
-        """Return the runs of an order; ``None`` if none is found."""
+        """Return the runs of an order; ``None`` if none is found (:attr:`is_exhausted` says why)."""
         done: list[Run] = []
         dead: set[tuple[tuple[int, int], ...]] = set()  # waiting executions without an order
         choices = [self._choices(dead)]
@@ -135,15 +137,18 @@ class _Search:
     def _choices(self, dead: set[tuple[tuple[int, int], ...]]) -> Iterator[Run]:
         """Yield the runs to try next; only one if it leaves enough copies for all waiting executions.
 
-        Nothing is yielded if the waiting executions are in ``dead``: no order was found for them before.
+        A run is as long as possible. With ``single``, a run that does not leave enough copies has one
+        execution. Nothing is yielded if the waiting executions are in ``dead``: they have no order.
         """
         if self._waiting_counts in dead:
             return
-        ready = [(action, self._max_times(action)) for action in sorted(self._waiting)]
-        ready = [(action, max_times) for action, max_times in ready if max_times]
-        free = [(action, max_times) for action, max_times in ready if self._is_free(action)]
-        for action, max_times in free[:1] or sorted(ready, key=lambda run: len(self._flows.uses[run[0]])):
-            for times in (max_times,) if free or not self._single else (1,):
+        ready_runs = [(action, self._max_times(action)) for action in sorted(self._waiting)]
+        ready_runs = [(action, max_times) for action, max_times in ready_runs if max_times]
+        free_runs = [(action, max_times) for action, max_times in ready_runs if self._is_free(action)]
+        for action, max_times in free_runs[:1] or sorted(
+            ready_runs, key=lambda run: len(self._flows.uses[run[0]])
+        ):
+            for times in (max_times,) if free_runs or not self._single else (1,):
                 self._steps_left -= 1
                 if self._steps_left <= 0 or self._expired():
                     self._steps_left = 0
@@ -151,7 +156,7 @@ class _Search:
                 yield action, times
 
     def _max_times(self, action: int) -> int:
-        """Return how often a waiting action can be executed in a row; 0 if not at all."""
+        """Return how often a waiting action can be executed in a row now; 0 if not at all."""
         max_times, flows = self._waiting[action], self._flows
         for o, n in flows.asks[action].items():
             surplus = self._copies[o] - n
@@ -171,13 +176,14 @@ class _Search:
     def _copies_to_keep(self, o: int) -> int:
         """Return how many copies of an object have to remain after all waiting executions.
 
-        They are those of the target, or those that one execution needs and does not consume, if more.
+        This is the greater of two numbers: the copies of the target, and the most copies that one waiting
+        execution needs and does not consume.
         """
         readers = (self._flows.asks[a].get(o, 0) - self._flows.uses[a].get(o, 0) for a in self._waiting)
         return max(self._flows.targets.get(o, 0), *readers)
 
     def _execute(self, run: Run, sign: int) -> None:
-        """Execute a run, or undo it with a ``sign`` of -1."""
+        """Execute a run on copies and waiting executions, or undo it with a ``sign`` of -1."""
         action, times = run
         for o, n in self._flows.uses[action].items():
             self._copies[o] -= sign * n * times

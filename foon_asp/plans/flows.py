@@ -11,7 +11,7 @@ from foon_asp.problem import Problem
 
 @dataclass(frozen=True)
 class Flows:
-    """Actions with preconditions and effects on copies of objects. Actions are numbered from 0.
+    """Actions, numbered from 0, with preconditions and effects on copies of objects.
 
     ``asks``: for each action, the copies of objects that have to exist.
     ``uses``: the copies that an execution consumes.
@@ -31,8 +31,9 @@ class Flows:
     def lacking(self, priced: bool) -> tuple[list[list[int]], list[int]]:
         """Return the preconditions of each action, and the targets, that initial copies do not satisfy.
 
-        If ``priced``, initial copies have a cost, and satisfy no precondition or target. How many copies
-        other actions add is ignored: in the delete relaxation, an action can be executed again.
+        They are given as objects. If ``priced``, initial copies have a cost, and satisfy no precondition or
+        target. How many copies other actions add is ignored: in the delete relaxation, an action can be
+        executed again.
         """
 
         def lacks(copies: Mapping[int, int]) -> list[int]:
@@ -42,7 +43,7 @@ class Flows:
         return list(map(lacks, self.asks)), lacks(self.targets)
 
     def balances(self) -> Iterator[tuple[int, dict[int, int], int]]:
-        """Yield the rows of the state equation: object, change by each action, and target of the object.
+        """Yield the rows of the state equation: an object, its change by each action, and its target.
 
         Objects without target that no action reduces are omitted, since their row always holds.
         """
@@ -59,7 +60,7 @@ class Flows:
 
     @property
     def supplies(self) -> Iterator[Supply]:
-        """The supply of each action, for each object of which it asks for several copies."""
+        """The supplies: one for each action and each object of which the action asks for several copies."""
         for action, preconditions in enumerate(self.asks):
             for o, n in preconditions.items():
                 if n > 1:
@@ -69,8 +70,8 @@ class Flows:
     def remainders(self) -> Iterator[Remainder]:
         """The remainders of objects.
 
-        An object has them if every action that asks for it leaves more copies than its target. Each says that
-        the smallest of these numbers of copies remains.
+        An object has remainders if every action that asks for it leaves more copies than its target. It has
+        one for each of these actions; ``copies`` is the least number that one of them leaves.
         """
         remaining_by_object: dict[int, dict[int, int]] = {}
         for action, preconditions in enumerate(self.asks):
@@ -85,7 +86,8 @@ class Flows:
     def copy_changes(self, condition: Supply | Remainder) -> dict[int, int]:
         """Return by how much each action changes the copies that a condition counts.
 
-        A supply counts what other actions add. A remainder counts all net effects other than 0.
+        For a supply, these are the copies that other actions add. For a remainder, they are the net effects
+        of all actions. Actions without such a change are omitted.
         """
         o, adds = condition.object, self.adds
         if isinstance(condition, Supply):
@@ -110,9 +112,9 @@ class Flows:
                 touched.setdefault(o, []).append((action, n))
         roles = {o: int(o in self.targets) for o in touched}
         for _ in range(PLANS.role_depth):
-            kinds = [hash(tuple(sorted((roles[o], n) for o, n in effects))) for effects in sides]
+            action_kinds = [hash(tuple(sorted((roles[o], n) for o, n in effects))) for effects in sides]
             roles = {
-                o: hash((roles[o], *sorted({(kinds[action], n) for action, n in by_action})))
+                o: hash((roles[o], *sorted({(action_kinds[action], n) for action, n in by_action})))
                 for o, by_action in touched.items()
             }
         return roles
@@ -130,7 +132,8 @@ class Flows:
 def flows_of(problem: Problem, units: Sequence[int]) -> Flows:
     """Return the preconditions, consumption and add effects of units; action ``i`` is ``units[i]``.
 
-    Object nodes that none of these units needs are excluded, except goals.
+    Object nodes that none of these units needs are omitted, except goals. Nodes that never run out are only
+    in ``items``.
     """
     needed = {o for unit in units for o in problem.flows[unit].asks}.union(problem.goals)
 

@@ -15,10 +15,11 @@ from foon_asp.problem import Objective, Problem
 def most_executions(
     problem: Problem, objectives: Sequence[Objective], settings: Settings
 ) -> dict[int, tuple[int, int]]:
-    """Return bounds on the executions of units in best plans: ``(0, most)`` by unit that can matter.
+    """Return bounds on the executions of each unit that can matter: ``(0, most)`` by unit id.
 
-    If there is no plan, every unit of the network has ``(0, 1)``. Raises :class:`UserError` if neither a best
-    plan nor the absence of plans is proved.
+    They hold of all plans with at most as many executions as the best plan that is found. If there is no
+    plan, every unit of the network has ``(0, 1)``. Raises :class:`UserError` if neither a best plan nor the
+    absence of plans is proved.
     """
     question = PlanQuestion(problem, objectives, settings, Reporter())
     outcome = solve_question(question)
@@ -35,7 +36,8 @@ def most_executions(
 def executions_as_good(outcome: Outcome, settings: Settings) -> dict[int, int] | None:
     """Return the most executions of each unit in plans as good as an outcome by its first objective.
 
-    Units that cannot matter are omitted. ``None`` if some unit has no bound, or if the outcome has no plan.
+    The bounds are by unit id; units that cannot matter are omitted. Return ``None`` if some unit has no
+    bound, or if the outcome has no plan.
     """
     question = PlanQuestion(outcome.problem, outcome.objectives, settings, Reporter())
     if outcome.costs is None or not question.apply_rules():

@@ -41,9 +41,9 @@ class PlanQuestion:
     ``bounds``: proved lower bounds by objective.
     ``limits``, ``restriction``: the rules that :meth:`apply_rules` understood.
     ``below``: pairs of an objective and a cost; a plan has to cost less than each.
-    ``incomparable``: counts of plans; a plan with at least the executions of one is excluded.
-    ``tree``: some tree that makes the goals if items last, as far as found.
-    ``seconds``: the time of each phase.
+    ``incomparable``: counts of plans; a plan is excluded if it has at least all executions of one of them.
+    ``tree``: the units of some tree that makes the goals if items last; empty if none is known.
+    ``seconds``: the time of each phase by name, in seconds.
     """
 
     def __init__(
@@ -66,14 +66,14 @@ class PlanQuestion:
         self.program = assemble(settings, reporter.warning, used_up=True, problem=problem)
         self.program.require_facts(problem, by_levels)
         require_rules_of_plans(self.program)
-        self.restriction: Restriction | None = None  # what rules remove and require
+        self.restriction: Restriction | None = None  # which units rules remove and require
         self.limits: Sequence[LinearRow] = ()
         bounded = settings.bounded or Bounded()
         self.below = [(objective, cost) for costs in bounded.below for objective, cost in costs.items()]
         self.incomparable = bounded.incomparable
         if not {objective for objective, _ in self.below} <= set(by_levels):
             raise BugError("a bound is on an objective that is not asked for")
-        self.tree: frozenset[int] = frozenset()  # some tree that makes the goals if items last
+        self.tree: frozenset[int] = frozenset()
         self.seconds: dict[str, float] = {}
         self.best: tuple[Plan, Costs] | None = None
         self.searched = False  # whether clingo ran, so that there are statistics
@@ -100,49 +100,51 @@ class PlanQuestion:
 
     @property
     def may_need_redundant(self) -> bool:
-        """Whether a rule may require units that lead to no goal."""
+        """Whether a rule may require units that are redundant for the goals."""
         rules = self.program.understood
         return rules is not None and not (rules.shrinking and rules.only_limits)
 
     def relevant_units(self) -> list[int] | None:
-        """Return the units that can matter, by id, and note some tree of them in ``tree``.
+        """Return the units that can matter, by id, ascending, and set ``tree`` to some tree of them.
 
         They are the achievers of goals and, recursively, of their preconditions. If rules may require
-        redundant units, they are all units that can execute. ``None`` if a goal, or a set that rules require,
-        cannot be reached even if items last.
+        redundant units, they are all units that can execute. Return ``None`` if a goal, or a set that rules
+        require, cannot be reached even if items last.
         """
         problem = self.problem
-        stocked = frozenset(o for o in problem.kitchen if problem.stock_of(o) != 0)
-        lasting = replace(problem, kitchen=stocked, restriction=self.restriction)
+        initial_nodes = frozenset(o for o in problem.kitchen if problem.stock_of(o) != 0)
+        lasting_problem = replace(problem, kitchen=initial_nodes, restriction=self.restriction)
         if self.restriction is None:
-            reached = unrestricted_reach(problem.network, problem.containers, problem.utensils, stocked)
+            reachable = unrestricted_reach(
+                problem.network, problem.containers, problem.utensils, initial_nodes
+            )
         else:
-            reached = reach(lasting)
-        if not all(reached.available[goal] for goal in problem.goals):
+            reachable = reach(lasting_problem)
+        if not all(reachable.available[goal] for goal in problem.goals):
             return None
-        if not all(required_set & set(reached.units) for required_set in self.required):
+        if not all(required_set & set(reachable.units) for required_set in self.required):
             return None
-        self.tree = frozenset(first_tree(lasting, reached) or ())
+        self.tree = frozenset(first_tree(lasting_problem, reachable) or ())
         if self.may_need_redundant:
-            return sorted(reached.units)
-        return sorted(units_relevant_to_plans(problem, reached))
+            return sorted(reachable.units)
+        return sorted(units_relevant_to_plans(problem, reachable))
 
     def has_no_lasting_tree(self) -> bool:
         """Return whether it is proved that rules allow no tree if items last, and so no plan.
 
-        A solver searches for such a tree. ``False`` without a search if there are no rules, or if rules use
-        numbers of executions for more than upper bounds.
+        The solver for items that last searches for such a tree. Without rules, return ``False`` without a
+        search. Do so, too, if rules read numbers of executions for more than upper bounds on these numbers.
         """
         rules, problem = self.program.understood, self.problem
         if rules is None or not rules.only_limits:
             return False
         kitchen = frozenset(o for o in problem.kitchen if problem.stock_of(o) != 0)
-        lasting = replace(problem, kitchen=kitchen, items=None)
+        lasting_problem = replace(problem, kitchen=kitchen, items=None)
         settings = self.settings._replace(bounded=None)
-        return solve_lasting(lasting, (Objective.UNITS,), settings).status is Status.INFEASIBLE
+        return solve_lasting(lasting_problem, (Objective.UNITS,), settings).status is Status.INFEASIBLE
 
     def try_incumbent(self, plan: Plan) -> bool:
-        """Make a plan the incumbent if it is allowed and better, and report it; return whether it is."""
+        """Make a plan the incumbent, and report it, if it is allowed and better; return whether it is so."""
         costs = self.problem.costs(plan)
         if not self.allows(plan):
             return False
@@ -157,14 +159,14 @@ class PlanQuestion:
         counts, costs = Counter(plan), self.problem.costs(plan)
         if not all(row.holds(plan) for row in self.limits):
             return False
-        better = all(costs.key([o]) < (-cost if multiplies(o) else cost,) for o, cost in self.below)
-        return better and not any(counts >= Counter(excluded) for excluded in self.incomparable)
+        is_below = all(costs.key([o]) < (-cost if multiplies(o) else cost,) for o, cost in self.below)
+        return is_below and not any(counts >= Counter(excluded) for excluded in self.incomparable)
 
     def outcome(self, status: Status, proof: Proof | None) -> Outcome:
-        """Replay the incumbent, and return the outcome with a status.
+        """Replay the incumbent, and return the outcome with this status and kind of proof.
 
         If the status is optimal, the costs of the incumbent become the bounds. ``proof`` is ``None`` if the
-        search was stopped. Raises :class:`BugError` if the replay fails.
+        search was stopped; the outcome then says why. Raises :class:`BugError` if the replay fails.
         """
         plan, costs = self.best or (None, None)
         if plan is not None and costs is not None:
@@ -184,7 +186,10 @@ class PlanQuestion:
         )
 
     def _require_runs(self, plan: Plan, costs: Costs) -> None:
-        """Raise :class:`BugError` unless an independent replay executes a plan at the stated costs."""
+        """Raise :class:`BugError` unless an independent replay executes a plan.
+
+        The plan also has to cost ``costs``, and to take as many initial copies as the problem says.
+        """
         replay = counted_run(self.problem, plan)
         if replay.lacking is not None:
             raise BugError(f"the plan {list(plan)} lacks {replay.lacking}")
@@ -195,6 +200,6 @@ class PlanQuestion:
         if copies != replay.stock:
             raise BugError(f"the plan {list(plan)} takes {replay.stock} of the stock and not {copies}")
 
-    def add_seconds(self, phase: str, began: float) -> None:
-        """Add the time since ``began``, on the clock ``perf_counter``, to the seconds of a phase."""
-        self.seconds[phase] = self.seconds.get(phase, 0.0) + time.perf_counter() - began
+    def add_seconds(self, phase: str, start_time: float) -> None:
+        """Add the time since ``start_time``, on the clock ``perf_counter``, to the seconds of a phase."""
+        self.seconds[phase] = self.seconds.get(phase, 0.0) + time.perf_counter() - start_time

@@ -26,7 +26,8 @@ def solve_used_up(
 ) -> Outcome:
     """Find the best plan under a lexicographic list of objectives, and prove it; return the outcome.
 
-    Raises :class:`UserError` naming a feature that plans do not support.
+    The outcome says how far this was done when the deadline in ``settings`` passed. Raises
+    :class:`UserError` naming a feature that plans do not support.
     """
     question = PlanQuestion(problem, objectives, settings or Settings(), reporter or Reporter())
     return solve_question(question)
@@ -35,7 +36,8 @@ def solve_used_up(
 def solve_question(question: PlanQuestion) -> Outcome:
     """Return the outcome of a question: its best plan, as far as it is found and proved.
 
-    An interrupt from the keyboard ends the search like the end of time.
+    An interrupt from the keyboard ends the search like the end of time, and is recorded in the deadline. If
+    statistics are asked for and clingo did not run, that is reported.
     """
     try:
         with question.deadline.watched("cutting the network", late=True):
@@ -52,21 +54,21 @@ def solve_question(question: PlanQuestion) -> Outcome:
 
 def _solve(question: PlanQuestion) -> Outcome:
     """Apply the rules, restrict the network to units that can matter, and search; return the outcome."""
-    began = time.perf_counter()
+    start_time = time.perf_counter()
     if not question.apply_rules():
         return question.outcome(Status.INFEASIBLE, Proof.SOLVER)
     question.deadline.doing = "cutting the network"
     units = question.relevant_units()
-    question.add_seconds("cut", began)
+    question.add_seconds("cut", start_time)
     return question.outcome(Status.INFEASIBLE, Proof.CUTS) if units is None else _search(question, units)
 
 
 def _search(question: PlanQuestion, units: list[int]) -> Outcome:
     """Search for the best plan of ``units``, and prove it; return the outcome.
 
-    Counts of least cost are looked for first, and then an order of them, which is the first incumbent. If
-    there is none, it is proved that there is no plan. Otherwise, counts of lower cost are searched until the
-    incumbent is proved the best.
+    First, counts of least cost are searched for, and then an order of them, which becomes the first
+    incumbent. If no plan is found so, the search tries to prove that there is none. With an incumbent, counts
+    of lower cost are searched until the incumbent is proved the best. Raises :class:`Stopped` if time is up.
     """
     counting = Counting(question, units)
     if not units:  # every goal is available: only the empty plan is irredundant
@@ -76,12 +78,12 @@ def _search(question: PlanQuestion, units: list[int]) -> Outcome:
         return question.outcome(
             Status.OPTIMAL if question.try_incumbent(()) else Status.INFEASIBLE, Proof.CUTS
         )
-    began = time.perf_counter()
+    start_time = time.perf_counter()
     measures = [counting.measure(objective) for objective in question.levels]
     with question.deadline.watched("counting executions"):
         plan = _plan_by_equation(question, counting, measures)
         counts = counting.bound.cheapest_counts(measures) if plan is None else None
-    question.add_seconds("bound", began)
+    question.add_seconds("bound", start_time)
     if plan is None and counts is None and counting.bound.is_infeasible():
         return question.outcome(Status.INFEASIBLE, Proof.COUNTS)
     if counts is not None:
@@ -89,15 +91,15 @@ def _search(question: PlanQuestion, units: list[int]) -> Outcome:
         if plan is None or not question.allows(plan):
             plan = counting.find_plan_beyond(counts)
     if plan is not None and question.try_incumbent(plan):
-        counting.bound.derivation = _positions(units, plan)
-        counting = _below_cutoff(question, counting, plan)
+        counting.bound.derivation = _executed_indices(units, plan)
+        counting = _without_expensive_units(question, counting, plan)
     elif question.has_no_lasting_tree():
         return question.outcome(Status.INFEASIBLE, Proof.SOLVER)
     elif counting.prove_infeasible():
         return question.outcome(Status.INFEASIBLE, Proof.COUNTS)
     while True:
         try:
-            began = time.perf_counter()
+            start_time = time.perf_counter()
             with question.deadline.watched("counting executions"):
                 counting.prove()
             return question.outcome(Status.OPTIMAL, Proof.COUNTS)
@@ -105,11 +107,11 @@ def _search(question: PlanQuestion, units: list[int]) -> Outcome:
             continue
         finally:
             question.bounds = counting.proved_bounds()
-            question.add_seconds("bound", began)
+            question.add_seconds("bound", start_time)
 
 
-def _positions(units: Sequence[int], plan: Plan) -> list[int]:
-    """Return the indices in ``units`` of the units that a plan executes."""
+def _executed_indices(units: Sequence[int], plan: Plan) -> list[int]:
+    """Return the indices in ``units``, ascending, of the units that a plan executes."""
     executed = set(plan)
     return [a for a, unit in enumerate(units) if unit in executed]
 
@@ -117,7 +119,8 @@ def _positions(units: Sequence[int], plan: Plan) -> list[int]:
 def _plan_by_equation(question: PlanQuestion, counting: Counting, measures: Sequence[Measure]) -> Plan | None:
     """Return a plan with the cheapest counts of the state equation, if they have an order.
 
-    ``None`` if there are no such counts, if they have no order that is allowed, or if the time is up.
+    Return ``None`` if there are no such counts, if no order of them is found that is allowed, or if the
+    search for an order runs out of time.
     """
     counts = counting.bound.cheapest_counts_by_equation(measures)
     try:
@@ -127,18 +130,18 @@ def _plan_by_equation(question: PlanQuestion, counting: Counting, measures: Sequ
     return plan if plan is not None and question.allows(plan) else None
 
 
-def _below_cutoff(question: PlanQuestion, counting: Counting, plan: Plan) -> Counting:
-    """Return a :class:`Counting` without the units that alone cost more than a plan.
+def _without_expensive_units(question: PlanQuestion, counting: Counting, plan: Plan) -> Counting:
+    """Return a :class:`Counting` without the units that alone cost more than a plan by the first objective.
 
-    The given one is returned if costs are exact, or if no unit costs so much.
+    If costs are counted exactly, or if no unit costs so much, return ``counting`` itself.
     """
     objective = question.levels[0]
     if multiplies(objective) or counting.measure(objective).exact is None:
         return counting
-    cutoff = question.problem.costs(plan).measure(objective)
-    units = [unit for unit in counting.units if question.problem.figure(objective, unit) <= cutoff]
+    plan_cost = question.problem.costs(plan).measure(objective)
+    units = [unit for unit in counting.units if question.problem.figure(objective, unit) <= plan_cost]
     if not units or len(units) == len(counting.units):
         return counting
-    fewer = Counting(question, units)
-    fewer.bound.derivation = _positions(units, plan)
-    return fewer
+    smaller = Counting(question, units)
+    smaller.bound.derivation = _executed_indices(units, plan)
+    return smaller

@@ -17,24 +17,27 @@ from foon_asp.problem import Costs, Objective, Problem
 class RankedPlans:
     """The plans of a question, the best first, under a lexicographic list of objectives.
 
-    Plans with at least the executions of an earlier one are excluded.
+    A plan is excluded if it has at least all executions of an earlier one.
 
     ``complete``: whether the iteration ended because there are no more plans.
-    ``pending``: if the iteration ended otherwise, the best plan found and not proved, with its costs; empty
-    if none.
+    ``pending``: if the iteration ended for another reason, a list of the best plan that was found and not
+    proved, with its costs. It is empty if there is no such plan.
     """
 
     def __init__(
         self, problem: Problem, objectives: Sequence[Objective], settings: Settings, reporter: Reporter
     ) -> None:
-        """Start the time limit of ``settings``: all plans share one deadline."""
+        """Start the time limit of ``settings``, which all plans share; nothing is searched yet."""
         self._problem, self._objectives = problem, tuple(objectives)
         self._settings, self._reporter = settings._replace(deadline=settings.effective_deadline), reporter
         self.complete = False
         self.pending: list[tuple[Plan, Costs]] = []
 
     def __iter__(self) -> Iterator[tuple[Plan, Costs]]:
-        """Yield plans with their costs, each proved the best among the plans that contain no earlier one."""
+        """Yield plans with their costs, each proved the best among the plans that contain no earlier one.
+
+        Only the search for the first plan is reported.
+        """
         yielded: list[Mapping[int, int]] = []
         while True:
             settings = self._settings._replace(bounded=Bounded(incomparable=tuple(yielded)))
@@ -59,10 +62,11 @@ def best_plans(
     reporter: Reporter,
     max_plans: int,
 ) -> tuple[list[tuple[Plan, Costs]], bool, bool]:
-    """Return at most ``max_plans`` best plans with different counts of executions, each with its costs.
+    """Return a list of best plans, whether they are proved the best, and whether there are no others.
 
-    Also returns whether the first is proved optimal, and whether there are no other best plans. Without such
-    a proof, the list has the incumbent, if any.
+    The list has at most ``max_plans`` plans with different counts of executions, each with its costs. Without
+    a proof that a plan is the best, it has the best plan found, if any. If it is proved that there is no
+    plan, the last value is true.
     """
     question = PlanQuestion(problem, objectives, settings, reporter)
     outcome = solve_question(question)
@@ -79,7 +83,7 @@ def best_plans(
     def add_plan(counts: Counts) -> None:
         """Add a plan with these counts to the result if some order of them is as good as the best plan.
 
-        Raises :class:`Stopped` after more than ``max_plans`` plans.
+        Raises :class:`Stopped` once there are more than ``max_plans`` plans.
         """
         plan = counting.find_order(counts)
         if plan is not None and problem.costs(plan).key(question.levels) == best.key(question.levels):

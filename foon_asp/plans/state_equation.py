@@ -33,7 +33,7 @@ _Row = tuple[dict[int, int], int]
 
 
 class RoundedProgram:
-    """A program over counts whose rows are sums of conditions, to which rounded rows are added.
+    """A linear program over counts whose rows are sums of conditions, to which rounded rows are added.
 
     ``expired`` returns whether time is up; solving then raises :class:`Stopped`.
     """
@@ -59,11 +59,12 @@ class RoundedProgram:
                     yield condition, *self.program.row_of(number)
 
     def strengthen(self, costs: Mapping[int, int], cutoff: float | None = None) -> Solved:
-        """Add rounded rows while they raise the bound; return the last solution of the relaxation.
+        """Add rounded rows while they raise the cost; return the last solution of the relaxation.
 
-        It ends at a bound above ``cutoff``. Without a cutoff, no bound is proved.
+        The search for rows ends at a proved bound above ``cutoff``. Without a cutoff, no bound is proved, and
+        the bound of the result is -infinity. Raises :class:`Stopped` if time is up.
         """
-        program, value, stalled = self.program, -math.inf, 0
+        program, cost_of_solution, stalled_rounds = self.program, -math.inf, 0
         while True:
             if cutoff is None:
                 solved = Solved(program.relaxation(costs).x, -math.inf)
@@ -71,13 +72,20 @@ class RoundedProgram:
                 solved = program.solve(costs, cutoff)
             if solved.x is None or (cutoff is not None and solved.bound > cutoff):
                 return solved
-            previous, value = value, sum(cost * solved.x[a] for a, cost in costs.items())
-            stalled = stalled + 1 if value < previous + INTEGRALITY * max(1.0, abs(previous)) else 0
-            if stalled > PLANS.stalled_rounds or not self._add_rounded_rows(solved.x):
+            previous_cost, cost_of_solution = (
+                cost_of_solution,
+                sum(cost * solved.x[a] for a, cost in costs.items()),
+            )
+            stalled_rounds = (
+                stalled_rounds + 1
+                if cost_of_solution < previous_cost + INTEGRALITY * max(1.0, abs(previous_cost))
+                else 0
+            )
+            if stalled_rounds > PLANS.stalled_rounds or not self._add_rounded_rows(solved.x):
                 return solved
 
     def _add_rounded_rows(self, x: Sequence[float]) -> bool:
-        """Add the rounded rows that a solution violates most; return whether there are any."""
+        """Add the rounded rows that the last solution, ``x``, violates most; return whether there are any."""
         violated: dict[tuple[tuple[int, int], ...], tuple[float, Rounded, _Row]] = {}
         for floats in self.program.inverse_rows(x):
             for sign in (1, -1):
@@ -97,17 +105,18 @@ class RoundedProgram:
         return bool(violated)
 
     def _round_sum(self, weights: Mapping[int, Fraction]) -> tuple[Rounded, _Row] | None:
-        """Return the rounded sum of weighted rows: its condition, and its row in whole numbers.
+        """Return the rounded sum of rows, by their weights: its condition, and its row in whole numbers.
 
-        ``None`` if rounding changes nothing, or if the coefficients become too large.
+        Return ``None`` if rounding changes nothing, or if the row would have to be multiplied by too large a
+        number to become whole.
         """
         denominator = math.lcm(*(weight.denominator for weight in weights.values()))
         coefficients: dict[int, int] = {}
         least = 0
         for number, weight in weights.items():
             times = int(weight * denominator)
-            row, wanted = self.program.row_of(number)
-            least += times * wanted
+            row, row_least = self.program.row_of(number)
+            least += times * row_least
             for column, coefficient in row.items():
                 coefficients[column] = coefficients.get(column, 0) + times * coefficient
         fraction = least % denominator
@@ -136,7 +145,7 @@ class RoundedProgram:
 def _fraction_of_weight(weight: float) -> Fraction:
     """Return the fractional part of a weight of a row, as a fraction with a small denominator.
 
-    Whole multiples of a row need no rounding.
+    The whole part is dropped, since whole multiples of a row need no rounding.
     """
     share = Fraction(weight).limit_denominator(PLANS.rounding_denominator)
     return share - math.floor(share)
@@ -148,7 +157,7 @@ class StateEquation(RoundedProgram):
     Landmarks, supplies and remainders may be added. Actions that they mention get an indicator: a column that
     is 1 if the action is executed at all.
 
-    ``caps``: upper bounds on the counts of actions; empty if there are none.
+    ``caps``: an upper bound on the count of each action, or ``None``; empty if there are no bounds.
     """
 
     def __init__(
@@ -158,7 +167,7 @@ class StateEquation(RoundedProgram):
         caps: Sequence[int | None],
         expired: Callable[[], bool],
     ) -> None:
-        """Build the program with the balances and the limits that count executions."""
+        """Build the program with the balances, and the limits that count each execution."""
         super().__init__(len(flows.asks), expired)
         self._flows, self._expired = flows, expired
         for action, cap in enumerate(caps):
@@ -168,9 +177,9 @@ class StateEquation(RoundedProgram):
         self._indicators: dict[int, int] = {}  # column by action
         for o, change, least in flows.balances():
             self.add((Balance(o),), change, least - flows.start.get(o, 0))
-        for number, (weights, limit, at_least, used) in enumerate(limits):
+        for number, (weights, limit, at_least, counts_once) in enumerate(limits):
             sign = 1 if at_least else -1
-            if not used:
+            if not counts_once:
                 self.add((Sum(number),), {a: sign * weight for a, weight in weights.items()}, sign * limit)
 
     def add_level(self, level: Level) -> None:
@@ -212,7 +221,7 @@ class StateEquation(RoundedProgram):
     def strengthen(self, costs: Mapping[int, int], cutoff: float | None = None) -> Solved:
         """Add rounded rows and return the last solution, as :meth:`RoundedProgram.strengthen`.
 
-        Rows that merge objects of one role come first (:meth:`_round_alternatives`).
+        Rows of a program in which objects of one role are merged come first (:meth:`_round_alternatives`).
         """
         self._costs: Mapping[int, int] | None = costs
         return super().strengthen(costs, cutoff)
@@ -220,7 +229,8 @@ class StateEquation(RoundedProgram):
     def _add_rounded_rows(self, x: Sequence[float]) -> bool:
         """Add rounded rows that a solution violates; return whether there are any.
 
-        In the first call of a :meth:`strengthen`, rows that merge objects of one role are tried first.
+        In the first call of a :meth:`strengthen`, rows of a program in which objects of one role are merged
+        are tried first.
         """
         if all(abs(value - round(value)) < INTEGRALITY for value in x):
             return False  # whole counts violate no rounded row
@@ -239,30 +249,36 @@ class StateEquation(RoundedProgram):
         for number, conditions in enumerate(self._conditions):
             for condition in conditions:
                 role = roles[condition.object] if isinstance(condition, Balance) else -1 - number
-                summed, total, least = sums.get(role, ([], {}, 0))
-                row, wanted = self.program.row_of(number)
+                summands, row_sum, least = sums.get(role, ([], {}, 0))
+                row, row_least = self.program.row_of(number)
                 for column, coefficient in row.items():
-                    total[column] = total.get(column, 0) + coefficient
-                sums[role] = [*summed, condition], total, least + wanted
+                    row_sum[column] = row_sum.get(column, 0) + coefficient
+                sums[role] = [*summands, condition], row_sum, least + row_least
         columns: dict[tuple[int, ...], list[int]] = {}
         for action in range(len(self._flows.asks)):
-            alike = (costs.get(action, 0), *(total.get(action, 0) for _, total, _ in sums.values()))
-            columns.setdefault(alike, []).append(action)
+            signature = (costs.get(action, 0), *(row_sum.get(action, 0) for _, row_sum, _ in sums.values()))
+            columns.setdefault(signature, []).append(action)
         if len(columns) == len(self._flows.asks):
             return False
         merged = RoundedProgram(len(columns), self._expired)
-        members = list(columns.values())
-        for summed, total, least in sums.values():
-            row = {column: total.get(actions[0], 0) for column, actions in enumerate(members)}
-            merged.add(summed, {column: n for column, n in row.items() if n}, least)
-        earlier = len(list(merged.rounded_rows))
-        merged.strengthen({column: alike[0] for column, alike in enumerate(columns) if alike[0]})
-        for condition, row, least in list(merged.rounded_rows)[earlier:]:
-            self.add((condition,), {a: n for column, n in row.items() for a in members[column]}, least)
-        return len(list(merged.rounded_rows)) > earlier
+        members_by_column = list(columns.values())
+        for summands, row_sum, least in sums.values():
+            row = {column: row_sum.get(actions[0], 0) for column, actions in enumerate(members_by_column)}
+            merged.add(summands, {column: n for column, n in row.items() if n}, least)
+        earlier_count = len(list(merged.rounded_rows))
+        merged.strengthen({column: signature[0] for column, signature in enumerate(columns) if signature[0]})
+        for condition, row, least in list(merged.rounded_rows)[earlier_count:]:
+            self.add(
+                (condition,), {a: n for column, n in row.items() for a in members_by_column[column]}, least
+            )
+        return len(list(merged.rounded_rows)) > earlier_count
 
     def optimum(self, costs: Sequence[int]) -> list[float] | None:
-        """Return whole counts of least cost in floats; ``None`` if HiGHS finds none, or when time is up."""
+        """Return whole counts of least cost, as far as floats tell; ``None`` if HiGHS finds none in time.
+
+        Columns of indicators are included. Rounded rows are added first, which raises :class:`Stopped` if
+        time is up.
+        """
         objective = {a: cost for a, cost in enumerate(costs) if cost}
         x = self.strengthen(objective).x
         if x is None or all(abs(value - round(value)) < INTEGRALITY for value in x):

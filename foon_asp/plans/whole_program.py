@@ -19,7 +19,10 @@ Bounds = tuple[list[int], list[int | None]]
 
 
 class Stopped(Exception):  # noqa: N818 (no error: there is no time left)
-    """Raised if a search ends without a result: time is up, or solutions in floats decide nothing."""
+    """Raised if a search ends without a result.
+
+    Time is up, the search has taken too many steps, or solutions in floats decide nothing.
+    """
 
 
 class Solved(NamedTuple):
@@ -76,7 +79,7 @@ class WholeProgram:
         self._changed: set[int] = set()
 
     @property
-    def columns(self) -> int:
+    def column_count(self) -> int:
         """The number of columns."""
         return len(self.lower)
 
@@ -127,7 +130,7 @@ class WholeProgram:
         return lowers, uppers
 
     def set_bounds(self, bounds: Bounds) -> None:
-        """Set the bounds of columns; columns that were added after ``bounds`` were made do not change."""
+        """Set the bounds of columns; those of columns added after ``bounds`` were made do not change."""
         lower, upper = bounds
         self.lower[: len(lower)], self.upper[: len(upper)] = lower, upper
 
@@ -142,7 +145,7 @@ class WholeProgram:
     def solve(self, objective: Mapping[int, int], cutoff: float = math.inf) -> Solved:
         """Return the solution of the relaxation and a proved bound.
 
-        Once the bound is above ``cutoff``, it is not improved. Raises :class:`Stopped` if time is up.
+        A bound that is above ``cutoff`` is not improved further. Raises :class:`Stopped` if time is up.
         """
         if self.is_empty:
             return Solved(None, math.inf)
@@ -161,8 +164,9 @@ class WholeProgram:
     def inverse_rows(self, x: Sequence[float]) -> Iterator[dict[int, float]]:
         """Yield rows of the inverse basis, for basic columns with a fractional value in ``x``.
 
-        ``x`` is the solution that was returned last. A row of the inverse basis has weights of rows of the
-        program, by row, in floats. The most fractional column comes first.
+        ``x`` is the solution that was returned last. A row of the inverse basis is a dictionary of the
+        weights other than 0 of rows of the program, in floats. The most fractional column comes first.
+        Nothing is yielded if HiGHS has no basis.
         """
         halves = {column: abs(value - math.floor(value) - 0.5) for column, value in enumerate(x)}
         fractional = {column: half for column, half in halves.items() if half < 0.5 - INTEGRALITY}
@@ -178,15 +182,16 @@ class WholeProgram:
     def _nearly_feasible(self) -> list[float] | None:
         """Return a solution that may violate rows a little; ``None`` if HiGHS finds none.
 
-        Rows with large coefficients may leave so small a feasible region that it is lost in floats.
+        The HiGHS instance is given up. Rows with large coefficients may leave so small a feasible region that
+        it is lost in floats.
         """
         highs, count = self._highs, len(self._rows)
         rows, infinite = self._np.arange(count, dtype="int32"), self._np.full(count, self._library.kHighsInf)
         least = self._np.array([float(least) for _, least in self._rows])
         highs.changeRowsBounds(count, rows, least - INTEGRALITY * self._np.maximum(1.0, abs(least)), infinite)
         self._run_to_the_end(highs)
-        optimal = highs.getModelStatus() == self._library.HighsModelStatus.kOptimal
-        x = list(highs.getSolution().col_value) if optimal else None
+        is_optimal = highs.getModelStatus() == self._library.HighsModelStatus.kOptimal
+        x = list(highs.getSolution().col_value) if is_optimal else None
         self._highs = None
         return x
 
@@ -212,7 +217,7 @@ class WholeProgram:
         return self._rows[row]
 
     def without_rows(self, rows: Container[int]) -> "WholeProgram":
-        """Return a program with the same columns, and without these rows; the others are numbered anew."""
+        """Return a program with equal columns and without ``rows``; its rows are numbered anew."""
         program = WholeProgram(0, self._expired)
         program.lower, program.upper = list(self.lower), list(self.upper)
         program._rows = [row for number, row in enumerate(self._rows) if number not in rows]
@@ -221,31 +226,31 @@ class WholeProgram:
     def whole_optimum(
         self, objective: Mapping[int, int], sufficient_cost: float = -math.inf
     ) -> list[float] | None:
-        """Return the optimal whole solution in floats; ``None`` if HiGHS finds none, or when time is up.
+        """Return the optimal whole solution in floats; ``None`` if HiGHS finds none, or if time is up.
 
-        The search ends at a solution that costs at most ``sufficient_cost``.
+        The search ends at the first solution that costs at most ``sufficient_cost``.
         """
         highs = self._update_highs(objective)
-        count = self.columns
-        whole = self._library.HighsVarType.kInteger
+        count = self.column_count
+        integer_type = self._library.HighsVarType.kInteger
         highs.changeColsIntegrality(
-            count, self._np.arange(count, dtype="int32"), self._np.array([whole] * count)
+            count, self._np.arange(count, dtype="int32"), self._np.array([integer_type] * count)
         )
         highs.setOptionValue("presolve", "on")
         highs.setOptionValue("mip_rel_gap", 0.0)
         highs.setOptionValue("objective_target", sufficient_cost)
         is_solved = not self._expired() and run(highs, self._expired, has_integers=True)
         status = self._library.HighsModelStatus
-        optimal = is_solved and highs.getModelStatus() in {status.kOptimal, status.kObjectiveTarget}
-        values = list(highs.getSolution().col_value) if optimal else None
+        is_optimal = is_solved and highs.getModelStatus() in {status.kOptimal, status.kObjectiveTarget}
+        x = list(highs.getSolution().col_value) if is_optimal else None
         self._highs = None
-        return values
+        return x
 
     def _run(self, objective: Mapping[int, int] | Mapping[int, float]) -> Any:
         """Solve the relaxation with HiGHS; return the HiGHS instance.
 
-        If a warm start ends without a result, solve it again from scratch. Raises :class:`Stopped` if time is
-        up.
+        If a warm start gives neither an optimum nor a proof that there is none, solve it again from scratch.
+        Raises :class:`Stopped` if time is up.
         """
         highs = self._update_highs(objective)
         self._run_to_the_end(highs)
@@ -263,7 +268,7 @@ class WholeProgram:
     def _update_highs(self, objective: Mapping[int, int] | Mapping[int, float]) -> Any:
         """Bring the HiGHS instance up to date with columns, rows, bounds and costs; return it."""
         np, inf = self._np, self._library.kHighsInf
-        count = self.columns
+        count = self.column_count
         if self._highs is None:
             self._highs = silent_highs()
             for option, value in _OPTIONS.items():
@@ -296,14 +301,15 @@ class WholeProgram:
     ) -> float | Fraction:
         """Return the bound on the cost that weights of rows prove (Lagrangian relaxation).
 
-        It is computed in whole numbers, so any weights are valid; -infinity if they prove nothing. Weights
-        are rounded finely only if a coarse rounding proves no bound above ``cutoff``.
+        Return -infinity if they prove nothing. The bound is computed in whole numbers, so any weights are
+        valid; those below 0 count as 0. Weights are rounded finely only if a coarse rounding proves no bound
+        above ``cutoff``.
         """
         best: float | Fraction = -math.inf
         for denominator in PARTS:
             scaled = [max(0, round(weight * denominator)) if abs(weight) < 1e15 else 0 for weight in weights]
             total = 0
-            reduced_costs = dict.fromkeys(range(self.columns), 0)
+            reduced_costs = dict.fromkeys(range(self.column_count), 0)
             for column, cost in objective.items():
                 reduced_costs[column] = cost * denominator
             for (row, least), weight in zip(self._rows, scaled, strict=True):

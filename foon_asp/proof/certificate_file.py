@@ -11,8 +11,9 @@ from foon_asp.proof.refusal import LimitError, RefusedError, require
 def load_certificate(file: Path) -> Any:
     """Return the parsed JSON of a certificate file.
 
-    The file is read up to the greatest length of certificates. Raises ``OSError`` and ``UnicodeDecodeError``
-    if it cannot be read, and :class:`RefusedError` if it is too long, invalid, or has a key twice.
+    Raises ``OSError`` if the file cannot be read, and ``UnicodeDecodeError`` if it is not UTF-8. Raises
+    :class:`RefusedError` if it is longer than :class:`CertificateLimits` allows, or if its text is refused
+    by :func:`read_certificate`.
     """
     with file.open("rb") as stream:
         raw = stream.read(ALLOWED.letters)
@@ -24,17 +25,18 @@ def load_certificate(file: Path) -> Any:
 def read_certificate(text: str) -> Any:
     """Return the parsed JSON of a certificate.
 
-    Raises :class:`RefusedError` if the text is too long or no JSON, or has a key twice or a float.
+    Raises :class:`RefusedError` if the text is no JSON, has a key twice in one object, or has a float. Raises
+    :class:`LimitError` if it has more letters or brackets than :class:`CertificateLimits` allows.
     """
 
     def unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         """Return a JSON object as a dictionary; refuse a key that occurs twice."""
-        content = dict(pairs)
-        require(len(content) == len(pairs), "a key stands twice in one object")
-        return content
+        fields = dict(pairs)
+        require(len(fields) == len(pairs), "a key stands twice in one object")
+        return fields
 
     def refuse_float(number: str) -> None:
-        """Refuse a number that is no whole number."""
+        """Raise :class:`RefusedError` for a number that is not whole, and for ``NaN`` and ``Infinity``."""
         raise RefusedError(f"found the number {number[:50]}, expected whole numbers, and fractions in quotes")
 
     if len(text) > ALLOWED.letters or text.count("[") + text.count("{") > ALLOWED.brackets:

@@ -35,22 +35,22 @@ def seal(certificate: Mapping[str, Any]) -> str:
 
 
 def check_header(certificate: Any, form: Form, subject: Subject) -> tuple[Rule, ...]:
-    """Check all of a certificate that depends neither on its tree nor on its proof; return its rules.
+    """Check form, version, keys, seal, level, rules and digests of a certificate; return its rules.
 
-    These are the form, the version, the keys, the seal, the level and the digests.
+    Raises :class:`RefusedError` at the first fault. The rules are checked for their form alone.
     """
     require(isinstance(certificate, dict), "expected an object with the keys of a certificate")
     require(certificate.get("format") == form.name, f"expected the format {form.name!r}")
     version = certificate.get("version")
-    same = type(version) is int and version == form.version
-    require(same, f"expected version {form.version} of the format")
+    is_known = type(version) is int and version == form.version
+    require(is_known, f"expected version {form.version} of the format")
     require(certificate.keys() == form.keys, f"expected the keys {', '.join(sorted(form.keys))}")
     require(certificate["seal"] == seal(certificate), "the seal does not match: something was changed")
     level, network = certificate["level"], subject.network
     require(type(level) is int and level == network.level, f"not a claim about level {network.level}")
     rules = read_rules(certificate["rules"], len(network))
     digests = subject.digests(rules)
-    named = read_object(certificate["digests"], tuple(digests))
+    stated_digests = read_object(certificate["digests"], tuple(digests))
     for name, digest in digests.items():
-        require(named[name] == digest, f"{name}: not the one that the certificate is about")
+        require(stated_digests[name] == digest, f"{name}: not the one that the certificate is about")
     return rules

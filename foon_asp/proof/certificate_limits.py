@@ -13,7 +13,7 @@ class CertificateLimits(NamedTuple):
         steps_each: Additional steps for each unit and object node of the network.
         rules: Rules of a claim.
         rule_steps: Steps that are counted for a rule, for each unit and object node of the network.
-        digits: Digits of a fraction in the file.
+        digits: Characters of a fraction in the file.
         sum_bits: Bits of a sum of fractions.
         product_bits: Bits of a product of rates.
         written_bits: Bits of the cost of a tree, since Python writes numbers of up to 4,300 digits.

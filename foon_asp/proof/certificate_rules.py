@@ -21,10 +21,11 @@ from foon_asp.proof.refusal import LimitError, require
 from foon_asp.proof.rule_meaning import ALL_STEPS, LIBRARY, OWN, Rule
 
 
-def read_rules(value: Any, units: int) -> tuple[Rule, ...]:
+def read_rules(value: Any, unit_count: int) -> tuple[Rule, ...]:
     """Return the rules of a claim; refuse rules that are unknown, malformed, repeated or not sorted.
 
-    ``units`` is the number of units. Claims about user rules are rules, too; only their form is checked.
+    Claims about user rules count as a rule; only their form is checked. ``unit_count`` is the number of units
+    of the network. Raises :class:`LimitError` if there are more rules than :class:`CertificateLimits` allows.
     """
     rules = [read_object(rule) for rule in read_list(value)]
     if len(rules) > ALLOWED.rules:
@@ -32,11 +33,11 @@ def read_rules(value: Any, units: int) -> tuple[Rule, ...]:
     for rule in rules:
         name = rule.get("rule")
         if name == OWN:
-            _check_user_rules(rule, units)
+            _check_user_rules(rule, unit_count)
             continue
         if name == ALL_STEPS:
             read_object(rule, ("rule", "units"))
-            read_numbers(rule["units"], units)
+            read_numbers(rule["units"], unit_count)
             continue
         require(isinstance(name, str) and name in LIBRARY, "a rule is unknown")
         values = LIBRARY[rule["rule"]].values
@@ -50,8 +51,8 @@ def read_rules(value: Any, units: int) -> tuple[Rule, ...]:
     return tuple(rules)
 
 
-def _check_user_rules(rule: Rule, units: int) -> None:
-    """Check the form of claims about user rules; their truth is taken on trust.
+def _check_user_rules(rule: Rule, unit_count: int) -> None:
+    """Refuse claims about user rules that are malformed; their truth is taken on trust.
 
     They consist of the texts of the rules with their digests, pairs of sets of units, and limits on sums.
     """
@@ -67,7 +68,7 @@ def _check_user_rules(rule: Rule, units: int) -> None:
         require(file["sha256"] == sha, "a text of rules does not have its digest")
     for claim in read_list(rule["claims"]):
         for unit_set in read_pair(claim, "two sets of units in a claim"):
-            read_numbers(unit_set, units, ascending=unit_set != [])
+            read_numbers(unit_set, unit_count, ascending=unit_set != [])
     for limit in read_list(rule["limits"]):
         amounts, max_sum = read_pair(limit, "amounts and their limit")
         require(type(max_sum) is int, "a limit is no whole number")
@@ -76,13 +77,13 @@ def _check_user_rules(rule: Rule, units: int) -> None:
             number = read_rational(amount)
             is_count = number > 0 and number.denominator == 1
             require(is_count, "a limit counts what is no whole number above zero")
-            counted += read_numbers(counted_units, units)
+            counted += read_numbers(counted_units, unit_count)
         require(len(set(counted)) == len(counted), "a limit counts a unit twice")
 
 
 def trusted_claims(certificate: Mapping[str, Any]) -> Rule | None:
-    """Return the claims about user rules that a certificate takes on trust, as one of its rules.
+    """Return the rule of a certificate that has its claims about user rules, which are taken on trust.
 
-    ``None`` if there are none.
+    Return ``None`` if it has no such claims.
     """
     return next((rule for rule in certificate.get("rules", ()) if rule["rule"] == OWN), None)

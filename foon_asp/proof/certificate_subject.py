@@ -49,8 +49,8 @@ class Subject(NamedTuple):
     def canonical_data(self, rules: Iterable[Rule] = (), goals: Iterable[int] = ()) -> str:
         """Return all data that a certificate with these rules and goals depends on, as canonical JSON.
 
-        It is an object with the data of each digest, by name, and under ``goals`` the id and text of each
-        goal.
+        It is an object with the data of each digest, by name, and under ``goals`` a pair of id and text for
+        each goal. Digests in ``stated`` are not used.
         """
         values = {name: value() for name, value in self._digest_data(rules).items()}
         return canonical_json(
@@ -58,9 +58,12 @@ class Subject(NamedTuple):
         )
 
     def _digest_data(self, rules: Iterable[Rule]) -> dict[str, Callable[[], object]]:
-        """Return for each digest, by name, a function that returns the data to be digested."""
+        """Return for each digest, by name, a function that returns the data to be digested.
+
+        Without a table of stand-ins, there is no digest ``stand-ins``.
+        """
         network, rates, prices = self.network, self.rates, self.prices
-        places = [looked for rule in rules if (looked := sources_read(rule, network)) is not None]
+        sources = [read for rule in rules if (read := sources_read(rule, network)) is not None]
         table = self.stand_ins
         return {
             **({} if table is None else {"stand-ins": lambda: stand_in_price_data(table)}),
@@ -69,14 +72,14 @@ class Subject(NamedTuple):
             "rates": lambda: rates and sorted([motion, str(rate)] for motion, rate in rates.items()),
             "utensils": lambda: sorted(self.utensils),
             "prices": lambda: prices and _price_data(prices, network.detailed or network),
-            "sources": lambda: places or None,
+            "sources": lambda: sources or None,
         }
 
 
 def _network_data(network: Network) -> list[Any]:
-    """Return all that a claim about a network can depend on, as lists that JSON can write.
+    """Return all that a claim about a network can depend on, except sources, as lists that JSON can write.
 
-    Below level 3, this includes the network of level 3.
+    Below level 3, the network of level 3 is included.
     """
     nodes = [
         (label, sorted(states), sorted(relations), contents)

@@ -30,8 +30,8 @@ class CompiledRules:
 
     ``removed``: it has none of these units.
     ``goals``: it makes each of these new nodes.
-    ``limits``: it keeps to each limit. A limit has the number of its constraint. Limits of constraints that
-    may have several are numbered after all constraints.
+    ``limits``: it keeps to each limit, by number. The limit by ``max_sum`` of a meaning has the number of its
+    constraint. The limits in ``limits`` of meanings are numbered after all constraints.
     ``never``: this set is empty. It has the numbers of constraints that no tree satisfies.
     ``barred``: it has no unit that these functions return, by number of the constraint (:class:`Meaning`).
 
@@ -43,7 +43,9 @@ class CompiledRules:
         """Compile meanings of constraints; new nodes and steps are numbered from the given numbers on."""
         self.removed: Units = frozenset().union(*(meaning.removed for meaning in meanings))
         self.never = {index for index, meaning in enumerate(meanings) if meaning.never}
-        self.barred: dict[int, Barred] = {p: m.barred for p, m in enumerate(meanings) if m.barred}
+        self.barred: dict[int, Barred] = {
+            index: meaning.barred for index, meaning in enumerate(meanings) if meaning.barred
+        }
         self.goals: list[int] = []
         self.makers: dict[int, list[int]] = {}
         self.gives: dict[int, list[int]] = {}
@@ -67,11 +69,11 @@ class CompiledRules:
                     member = self._counting_member(units)
                     amounts[member] = amounts[member] + amount if member in amounts else amount
                 self.limits[index] = Limit(amounts, meaning.max_sum)
-        several = (limit for meaning in meanings for limit in meaning.limits)
-        self.limits.update((len(meanings) + number, Limit(*limit)) for number, limit in enumerate(several))
+        further = (limit for meaning in meanings for limit in meaning.limits)
+        self.limits.update((number, Limit(*limit)) for number, limit in enumerate(further, len(meanings)))
 
     def barred_units(self, used: Units, without: Units) -> dict[int, Units]:
-        """Return the units that each constraint bars, by number of the constraint.
+        """Return the units that each constraint of ``barred`` bars, by number of the constraint.
 
         No tree with all units of ``used`` and none of ``without`` has a barred unit.
         """
@@ -94,7 +96,7 @@ class CompiledRules:
         return None
 
     def units_and_steps(self, units: Units) -> Units:
-        """Return a tree's units together with the steps that it uses."""
+        """Return the units of a tree together with the steps that it uses."""
         made = {node for unit in units for node in self.gives.get(unit, ())}
         required = {node for unit in units for node in self.needs.get(unit, ())}.union(self.goals)
         steps = (
@@ -116,7 +118,7 @@ class CompiledRules:
         return step
 
     def _add_achievers(self, node: int, units: Units) -> None:
-        """Add a node to what each of the units makes."""
+        """Add each of the units as a maker of a new node."""
         for unit in sorted(units):
             self.gives.setdefault(unit, []).append(node)
             self.makers[node].append(unit)
@@ -124,7 +126,8 @@ class CompiledRules:
     def _counting_member(self, units: Units) -> int:
         """Return the number of a unit or step that a tree has once if it has a unit of the set.
 
-        It is the only unit of the set. Otherwise it is a new step, whose node all units of the set need.
+        If the set has one unit, it is this unit. Otherwise it is a new step, whose node all units of the set
+        need.
         """
         if len(units) == 1:
             (only,) = units

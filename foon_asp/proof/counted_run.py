@@ -1,4 +1,4 @@
-"""Execution of plans of any length: copies are counted instead of listed, without the solver's code."""
+"""Execution of plans of any length, without the solver's code: copies are counted, not listed."""
 
 from collections.abc import Iterable
 from itertools import groupby
@@ -13,8 +13,8 @@ class CountedRun(NamedTuple):
     """The result of executing a plan with :func:`counted_run`.
 
     ``lacking``: the node of which too few copies exist at some step or for a goal; ``None`` if the plan runs.
-    ``stock``: for each node with a finite stock, the initial copies that the plan needs, up to where it
-    stopped.
+    ``stock``: for each node with a finite stock, the number of initial copies that the plan needs. If the
+    plan stopped, only the steps before the shortage count.
     """
 
     lacking: ObjectNode | None
@@ -22,16 +22,16 @@ class CountedRun(NamedTuple):
 
 
 def counted_run(problem: Problem, plan: Iterable[int]) -> CountedRun:
-    """Execute a plan from the kitchen of a problem whose items are used up; stop at the first shortage.
+    """Execute a plan from the kitchen of a problem whose items are used up, and check the goals at its end.
 
-    ``plan`` has the ids of the units in order, with repeats. Equal units in a row are executed in one step,
-    so the time depends on the number of such runs.
+    The execution stops at the first shortage. ``plan`` has the ids of the units in order, with repeats.
+    Equal units in a row are executed as one step.
     """
     executions = Executions(problem)
     initial = executions.initial_copies()
     copies, stock = initial.copy(), dict.fromkeys(initial, 0)
-    for unit, run in groupby(plan):
-        times = sum(1 for _ in run)
+    for unit, equal_steps in groupby(plan):
+        times = sum(1 for _ in equal_steps)
         preconditions, consumes, adds = executions.of(problem.network.unit(unit))
         for node in {*preconditions, *adds}:
             if executions.is_endless(node):
@@ -44,11 +44,11 @@ def counted_run(problem: Problem, plan: Iterable[int]) -> CountedRun:
             if node in initial:
                 stock[node] = max(stock[node], needed - least + initial[node])
             copies[node] += times * change
-    for node, wanted in executions.wanted_copies().items():
+    for node, wanted_count in executions.wanted_copies().items():
         if executions.is_endless(node):
             continue
-        if copies[node] < wanted:
+        if copies[node] < wanted_count:
             return CountedRun(node, stock)
         if node in initial:
-            stock[node] = max(stock[node], wanted - copies[node] + initial[node])
+            stock[node] = max(stock[node], wanted_count - copies[node] + initial[node])
     return CountedRun(None, stock)

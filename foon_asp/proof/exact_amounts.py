@@ -34,11 +34,16 @@ def bit_length(value: Fraction) -> int:
 
 
 class AmountArithmetic:
-    """Exact arithmetic with amounts by some objectives; its work counts as steps of a check."""
+    """Exact arithmetic with amounts, whose work counts as steps of a check.
+
+    ``objectives``: the objectives, most important first; empty if the claim is that there is no tree.
+    ``budget``: the steps of the check; :class:`LimitError` is raised if they run out.
+    ``minus_log``: a cached function from a rate to bounds of ``-log(rate)`` from below and above.
+    """
 
     def __init__(self, objectives: Sequence[str], budget: StepBudget) -> None:
         self.objectives, self.budget = objectives, budget
-        self.minus_log = cache(self._minus_log)  # of a rate
+        self.minus_log = cache(self._minus_log)
 
     def sum(self, amounts: Iterable[Amount]) -> Amount:
         """Return the sum of amounts; the work counts as steps of the check."""
@@ -70,7 +75,10 @@ class AmountArithmetic:
         return scales
 
     def sign(self, amount: Amount) -> Fraction | int:
-        """Return a number with the sign of an amount, exactly; the first objective that is not 0 decides."""
+        """Return a number with the exact sign of an amount.
+
+        The part for the most important objective that is not 0 decides. If all parts are 0, return 0.
+        """
         for level, objective in enumerate(self.objectives or (UNMEASURED,)):
             if objective == "success":
                 sign = self._minus_log_sign({r: e for (_, r), e in amount.items() if r is not None})
@@ -85,10 +93,12 @@ class AmountArithmetic:
 
         Bounds of the logarithms decide if they can. Otherwise, exponents are multiplied by their common
         denominator. The product of all ``rate ** e`` is then a quotient of whole numbers, and is compared
-        with 1. The sign is positive if it is below 1. A rate of 0 costs more than any weight.
+        with 1. The sign is positive if the product is below 1. Raises :class:`LimitError` if the product is
+        too long. If the rate 0 has an exponent, the sign of this exponent decides, since ``-log(0)`` is
+        infinite.
         """
-        if never := exponents.get(Fraction(0)):
-            return never
+        if zero_exponent := exponents.get(Fraction(0)):
+            return zero_exponent
         exponents = {rate: e for rate, e in exponents.items() if e and rate != 1}
         # bounds of logarithms have hundreds of bits themselves
         for size in accumulate(map(bit_length, exponents.values())):
@@ -115,15 +125,19 @@ class AmountArithmetic:
 
         Python's decimal logarithm is correctly rounded, so it is off by less than one unit of its last digit.
         For a rate near 1, the logarithms of denominator and numerator share their first digits. So one more
-        digit is computed for each three bits that they share.
+        digit is computed for each three bits that they share, and at most 400 more.
         """
         shared = (rate.denominator.bit_length() - (rate.denominator - rate.numerator).bit_length()) // 3
-        precise = Context(prec=50 + min(shared, 400))
-        self.budget.spend((precise.prec // 10) ** 3)
+        decimal_context = Context(prec=50 + min(shared, 400))
+        self.budget.spend((decimal_context.prec // 10) ** 3)
         low = high = Fraction(0)
         for sign, number in ((1, rate.denominator), (-1, rate.numerator)):
-            logarithm = precise.ln(Decimal(number))
-            unit = Fraction(10) ** (logarithm.adjusted() + 1 - precise.prec) if logarithm else Fraction(0)
-            low += sign * Fraction(logarithm) - unit
-            high += sign * Fraction(logarithm) + unit
+            logarithm = decimal_context.ln(Decimal(number))
+            last_digit = (
+                Fraction(10) ** (logarithm.adjusted() + 1 - decimal_context.prec)
+                if logarithm
+                else Fraction(0)
+            )
+            low += sign * Fraction(logarithm) - last_digit
+            high += sign * Fraction(logarithm) + last_digit
         return low, high

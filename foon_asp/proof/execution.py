@@ -62,19 +62,22 @@ def _execution_of(
 ) -> Callable[[FunctionalUnit], Execution]:
     """Return a cached function from a unit to its execution.
 
-    ``items`` is ``None`` if items last. ``network`` is the network of the units if its level is below 3, and
-    ``None`` otherwise.
+    ``items`` is ``None`` if items last. At level 3, problems whose items last share the function.
+    ``network`` is the network of the units if its level is below 3, and ``None`` otherwise.
     """
     if items is None and network is None:
-        return _by_the_rule(rule, utensils)
+        return _shared_execution_of(rule, utensils)
     return cache(partial(_execution, items or UsedUp(), rule, utensils, network, amounts))
 
 
 @lru_cache(maxsize=4)
-def _by_the_rule(rule: ContainerRule, utensils: frozenset[str]) -> Callable[[FunctionalUnit], Execution]:
+def _shared_execution_of(
+    rule: ContainerRule, utensils: frozenset[str]
+) -> Callable[[FunctionalUnit], Execution]:
     """Return the function from a unit to its execution where items last, at level 3.
 
-    The function and its cache are shared by all problems with this container rule and these utensils.
+    All problems with this container rule and these utensils share the function and its cache, which keeps
+    10,000 executions.
     """
     return lru_cache(maxsize=10_000)(partial(_execution, UsedUp(), rule, utensils, None, {}))
 

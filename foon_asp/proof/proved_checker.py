@@ -26,7 +26,7 @@ _BUILT = Path(__file__).resolve().parents[2] / "verified" / "build" / _PROGRAM
 def find_checker() -> Path | None:
     """Return the path of the proved checker: the build of this checkout, or else the one on PATH.
 
-    ``None`` if neither exists.
+    Return ``None`` if neither exists.
     """
     if _BUILT.is_file():
         return _BUILT
@@ -37,12 +37,12 @@ def find_checker() -> Path | None:
 def run_checker(checker: Path, subject_data: str, certificate: str) -> tuple[str, str]:
     """Run the proved checker; return its verdict and the reason.
 
-    The verdict is ``accepted``, ``refused`` or ``not checked``. It is ``not checked``, too, if the program
-    fails.
+    The verdict is ``accepted``, ``refused`` or ``not checked``. If the program fails, it is ``not checked``,
+    and the reason names the exit code.
 
     Parameters:
         checker: The path of the program.
-        data: The data as :meth:`Subject.canonical_data` returns them.
+        subject_data: The data as :meth:`Subject.canonical_data` returns them.
         certificate: The certificate as JSON text.
     """
     process = subprocess.run(
@@ -62,7 +62,7 @@ def check_certificate(certificate: Mapping[str, Any], subject: Subject) -> str:
     """Check a certificate with the proved checker, after :func:`verify` accepted it.
 
     Returns:
-        ``accepted``, or in words why nothing was checked, such as that the checker is not built.
+        ``accepted``, or in words why nothing was checked, for example that the checker is not built.
 
     Raises:
         RefusedError: if the proved checker refuses the certificate.

@@ -29,7 +29,7 @@ def require(holds: bool, otherwise: str) -> None:
 
 @contextmanager
 def refuse_deep_nesting() -> Iterator[None]:
-    """Turn a ``RecursionError`` of the decorated check into :class:`RefusedError`."""
+    """Raise :class:`RefusedError` in place of a ``RecursionError`` of the block or decorated function."""
     try:
         yield
     except RecursionError:

@@ -55,7 +55,8 @@ class Replay(NamedTuple):
     ``steps``: the steps that ran, in order.
     ``shortage``: the shortage that stopped the replay; ``None`` if the plan runs and makes the goals.
     ``left``: the consumable copies that exist after the last step, from the stock or made by steps.
-    ``stock``: for each node with a finite stock, the number of initial copies that the plan needs.
+    ``stock``: for each node with a finite stock, the number of initial copies that the plan needs. The step
+    that lacks copies is included.
     """
 
     steps: tuple[Step, ...]
@@ -74,10 +75,10 @@ def replay_for(problem: Problem, plan: Iterable[FunctionalUnit]) -> Replay:
 
 
 def replayable_problem(problem: Problem, plan: Iterable[FunctionalUnit]) -> Problem:
-    """Return a problem in which :func:`replay_for` can replay a plan.
+    """Return a problem whose items are used up, so that :func:`replay_for` can replay a plan.
 
-    A problem whose items are used up is returned as it is. If items last, return a copy with items that are
-    used up, in which all inputs of the plan stay.
+    If this holds of ``problem``, return it as it is. Otherwise, return a copy in which items are used up, but
+    those with the label of an input of the plan stay.
     """
     if problem.items is not None:
         return problem
@@ -88,48 +89,48 @@ def replayable_problem(problem: Problem, plan: Iterable[FunctionalUnit]) -> Prob
 def predecessors(replay: Replay) -> Iterator[set[int]]:
     """Yield for each step, in order, the positions of the earlier steps that have to be done before it.
 
-    Such an earlier step made a copy that the step needs, or read a copy that the step uses up. Endless nodes
-    cause no order, since another copy always exists.
+    To *read* a copy is to need it and not to use it up. Such an earlier step made a copy that the step needs,
+    or it read a copy that the step uses up. Endless nodes cause no order, since another copy always exists.
     """
     readers: dict[tuple[Copy, int], set[int]] = {}
     spent: Counter[Copy] = Counter()  # how often an equal copy was used up
-    for number, step in enumerate(replay.steps):
-        after = {copy.made for copy in (*step.gone, *step.stayed) if copy.made is not None}
-        for read in _numbered_reads(step, spent):
-            readers.setdefault(read, set()).add(number)
+    for position, step in enumerate(replay.steps):
+        earlier_steps = {copy.made for copy in (*step.gone, *step.stayed) if copy.made is not None}
+        for numbered_copy in _numbered_reads(step, spent):
+            readers.setdefault(numbered_copy, set()).add(position)
         for copy in step.gone:
             if copy.made is not None or copy.node in replay.stock:
-                after |= readers.get((copy, spent[copy]), set())
+                earlier_steps |= readers.get((copy, spent[copy]), set())
             spent[copy] += 1
-        yield after
+        yield earlier_steps
 
 
 def shared_readers(replay: Replay, is_free: Callable[[str], bool]) -> list[tuple[int, ...]]:
-    """Return, for each copy that several steps need and do not use up, the positions of these steps.
+    """Return, for each copy that two or more steps read, the positions of these steps, ascending.
 
-    Copies that never run out are omitted: the kitchen has them, and the stock does not count them. Nodes with
-    a label that ``is_free`` accepts are omitted, too.
+    To *read* a copy is to need it and not to use it up. Copies of endless nodes are omitted: the kitchen has
+    them, and the stock does not count them. Copies with a label that ``is_free`` accepts are omitted as well.
     """
-    reading: dict[tuple[Copy, int], list[int]] = {}
+    readers: dict[tuple[Copy, int], list[int]] = {}
     spent: Counter[Copy] = Counter()  # as in predecessors
-    for number, step in enumerate(replay.steps):
-        for copy, earlier in _numbered_reads(step, spent):
+    for position, step in enumerate(replay.steps):
+        for copy, copy_number in _numbered_reads(step, spent):
             if (copy.made is not None or copy.node in replay.stock) and not is_free(copy.node.label):
-                reading.setdefault((copy, earlier), []).append(number)
+                readers.setdefault((copy, copy_number), []).append(position)
         spent.update(step.gone)
-    return [tuple(steps) for steps in reading.values() if len(steps) > 1]
+    return [tuple(steps) for steps in readers.values() if len(steps) > 1]
 
 
 def _numbered_reads(step: Step, spent: Counter[Copy]) -> Iterator[tuple[Copy, int]]:
     """Yield each copy that a step needs and does not use up, with a number that tells it from its equals.
 
-    Copies are equal if node and maker are equal. Copies used up by earlier steps, counted in ``spent``, have
-    the first numbers. Those that this step uses up come next.
+    Copies are equal if node and maker are equal. Among equal copies, those that earlier steps used up, which
+    ``spent`` counts, have the first numbers, from 0. Those that this step uses up have the next ones.
     """
-    before = spent + Counter(step.gone)
+    next_numbers = spent + Counter(step.gone)
     for copy in step.stayed:
-        yield copy, before[copy]
-        before[copy] += 1
+        yield copy, next_numbers[copy]
+        next_numbers[copy] += 1
 
 
 class _Kitchen:
@@ -147,7 +148,10 @@ class _Kitchen:
         self._stock_needed: dict[ObjectNode, int] = dict.fromkeys(self._copies, 0)
 
     def run(self, plan: Sequence[FunctionalUnit]) -> Replay:
-        """Execute the units in order, up to the first that lacks a copy; then look for the goals."""
+        """Execute the units in order, up to the first that lacks a copy, and return the replay.
+
+        If all units run, the shortage is that of the first goal that lacks copies.
+        """
         steps: list[Step] = []
         shortage: Shortage | None = None
         for position, unit in enumerate(plan):
@@ -173,10 +177,10 @@ class _Kitchen:
         preconditions, consumes, adds = self._executions.of(unit)
         gone, stayed, came = list[Copy](), list[Copy](), list[Copy]()
         for node, amount in preconditions.items():
-            used = consumes.get(node, 0)
-            gone += self._take_copies(node, used, position)
+            consumed = consumes.get(node, 0)
+            gone += self._take_copies(node, consumed, position)
             endless = self._endless_copy(node)
-            unconsumed = amount - used
+            unconsumed = amount - consumed
             stayed += [endless] * unconsumed if endless else islice(self._copies[node], unconsumed)
         for node, amount in adds.items():
             copies = [Copy(node, position)] * amount
@@ -187,7 +191,7 @@ class _Kitchen:
         return Step(unit, tuple(gone), tuple(stayed), tuple(came))
 
     def _endless_copy(self, node: ObjectNode) -> Copy | None:
-        """Return the copy that stands for a node that never runs out; ``None`` for other nodes."""
+        """Return a copy that stands for all copies of an endless node; ``None`` for other nodes."""
         return Copy(node, None) if self._executions.is_endless(node) else None
 
     def _has_copies(self, node: ObjectNode, amount: int) -> bool:
@@ -215,5 +219,5 @@ class _Kitchen:
         return [self._copies[node].popleft() for _ in range(amount)]
 
     def _shortage(self, step: int | None, node: ObjectNode, amount: int) -> Shortage:
-        """Return the shortage of a node of which ``amount`` copies are needed, with its consumers so far."""
+        """Return the shortage of a node of which a step needs ``amount`` copies, with consumers so far."""
         return Shortage(step, node, tuple(self._consumers_of.get(node, ())), amount)

@@ -14,8 +14,8 @@ from foon_asp.network import Network
 
 # A constraint as a certificate states it: its name as ``rule``, and its values by name.
 Rule: TypeAlias = Mapping[str, Any]
-Units = frozenset[int]
-Barred = Callable[[Units, Units], Units]
+Units = frozenset[int]  # ids of units
+Barred = Callable[[Units, Units], Units]  # from used and excluded units to barred ones (:class:`Meaning`)
 
 
 class Question(NamedTuple):
@@ -45,7 +45,7 @@ class Question(NamedTuple):
         return frozenset(unit for unit, name in enumerate(self.network.motions) if name == motion)
 
     def touching(self, nodes: Iterable[int]) -> Units:
-        """Return the units that have one of the nodes among their inputs or outputs."""
+        """Return the units, by id, that have one of the nodes among their inputs or outputs."""
         touched, network = frozenset(nodes), self.network
         sides = enumerate(zip(network.inputs, network.outputs, strict=True))
         return frozenset(
@@ -59,12 +59,12 @@ class Question(NamedTuple):
         return [o for o, node in enumerate(self.network.objects) if node.label == label]
 
     def made_with(self, names: Collection[str]) -> list[int]:
-        """Return the nodes that have one of the names as label or among their ingredients, ascending."""
-        wanted = frozenset(names)
+        """Return the nodes, by id, with one of the names as label or ingredient, ascending."""
+        wanted_names = frozenset(names)
         return [
             o
             for o, node in enumerate(self.network.objects)
-            if node.label in wanted or not wanted.isdisjoint(node.ingredients)
+            if node.label in wanted_names or not wanted_names.isdisjoint(node.ingredients)
         ]
 
 
@@ -77,7 +77,7 @@ class Meaning(NamedTuple):
             alternative is a list of sets of units. The tree satisfies it if it has a unit of each set.
         counted_sets: Sets of units, each with an amount from 0. A set counts once if the tree has a unit of
             it.
-        max_sum: The greatest sum of the amounts of sets that count; ``None`` is no limit.
+        max_sum: The greatest sum of the amounts of sets that count; ``None`` for no limit.
         never: Whether no tree satisfies the constraint.
         barred: A function of two sets of units. It returns units that no tree has together with all of the
             first set and none of the second.
@@ -125,7 +125,7 @@ def meaning_of_rule(rule: Rule, question: Question) -> Meaning:
 def sources_read(rule: Rule, network: Network) -> list[list[str]] | None:
     """Return for each unit, by id, what a rule reads of the unit's sources, sorted.
 
-    ``None`` if the rule reads no sources.
+    Return ``None`` if the rule reads no sources.
     """
     read_sources = None if rule["rule"] in {OWN, ALL_STEPS} else LIBRARY[rule["rule"]].read_sources
     if read_sources is None:
@@ -149,10 +149,10 @@ def _forbid_object(question: Question, forbidden_object: str) -> Meaning:
 
 
 def _forbid_ingredient(question: Question, allergen: list[str]) -> Meaning:
-    """Return a meaning that removes the units that touch an object with an allergen.
+    """Return a meaning that removes the units with a tainted object among inputs or outputs.
 
-    The object is labelled as one of the names in ``allergen``, or has it as an ingredient. If a goal is such
-    an object, no tree satisfies the constraint.
+    A *tainted* object has one of the names in ``allergen`` as its label or as an ingredient. If a goal is
+    tainted, no tree satisfies the constraint.
     """
     tainted = question.made_with(allergen)
     return Meaning(question.touching(tainted), never=not set(tainted).isdisjoint(question.goals))
@@ -161,15 +161,18 @@ def _forbid_ingredient(question: Question, allergen: list[str]) -> Meaning:
 def _least_rate(question: Question, least_rate: int) -> Meaning:
     """Return a meaning that removes the units whose success rate is unknown or below ``least_rate``.
 
-    Rates are compared in millionths, rounded down.
+    ``least_rate`` is in millionths. Rates are rounded down to millionths before they are compared.
     """
     rates = map(question.rate, range(len(question.network)))
-    enough = [rate is not None and rate * 1_000_000 // 1 >= least_rate for rate in rates]
-    return Meaning(frozenset(unit for unit, reliable in enumerate(enough) if not reliable))
+    reaches_least = [rate is not None and rate * 1_000_000 // 1 >= least_rate for rate in rates]
+    return Meaning(frozenset(unit for unit, reaches in enumerate(reaches_least) if not reaches))
 
 
 def _matching_source_names(network: Network, unit: int, allowed: list[str]) -> set[str]:
-    """Return the names of ``allowed`` that name a source of the unit: a path, file name or video address."""
+    """Return the names in ``allowed`` that name a source of a unit: its path, file name or video address.
+
+    Half letters (surrogates) in a source are replaced by escapes before it is compared.
+    """
     return {
         name
         for source in network.sources[unit]
@@ -179,7 +182,7 @@ def _matching_source_names(network: Network, unit: int, allowed: list[str]) -> s
 
 
 def _only_sources(question: Question, allowed: list[str]) -> Meaning:
-    """Return a meaning that removes the units without a source in ``allowed``."""
+    """Return a meaning that removes the units of which no source has its path, file name or video allowed."""
     network = question.network
     return Meaning(
         frozenset(u for u in range(len(network)) if not _matching_source_names(network, u, allowed))
@@ -192,21 +195,27 @@ def _videos(network: Network, unit: int, least_videos: int) -> set[str]:
 
 
 def _at_least_videos(question: Question, least_videos: int) -> Meaning:
-    """Return a meaning that removes the units that are in fewer videos than ``least_videos``."""
+    """Return a meaning that removes the units whose sources have fewer videos than ``least_videos``.
+
+    Equal video addresses count once.
+    """
     network = question.network
-    seen = [len(_videos(network, unit, least_videos)) for unit in range(len(network))]
-    return Meaning(frozenset(unit for unit, videos in enumerate(seen) if videos < least_videos))
+    video_counts = [len(_videos(network, unit, least_videos)) for unit in range(len(network))]
+    return Meaning(frozenset(unit for unit, count in enumerate(video_counts) if count < least_videos))
 
 
 def _motion_only_with(question: Question, tied_motion: str, tied_utensil: str) -> Meaning:
-    """Return a meaning that removes the units with the motion that have no object of the utensil's label."""
+    """Return a meaning that removes the units with the motion that do not touch the utensil.
+
+    A unit touches it if an input or output has its label.
+    """
     return Meaning(question.with_motion(tied_motion) - question.touching(question.labelled(tied_utensil)))
 
 
 def _never_heated(question: Question, unheated_ingredient: str, heats: list[str]) -> Meaning:
-    """Return a meaning that removes units with a motion of ``heats`` and the ingredient in an input.
+    """Return a meaning that removes the units that heat the ingredient.
 
-    An input labelled as the ingredient counts, too.
+    They have a motion in ``heats``, and an input with the ingredient as its label or among its ingredients.
     """
     network, hot = question.network, frozenset(heats)
     tainted = frozenset(question.made_with([unheated_ingredient]))
@@ -227,7 +236,7 @@ def _require_object(question: Question, required_object: str) -> Meaning:
 def _require_ingredient(question: Question, required_ingredient: str) -> Meaning:
     """Return a meaning that requires a unit with the ingredient in an input or output.
 
-    An input or output labelled as the ingredient counts, too.
+    An input or output with the ingredient as its label counts as well.
     """
     return Meaning(requirements=[[[question.touching(question.made_with([required_ingredient]))]]])
 
@@ -235,20 +244,20 @@ def _require_ingredient(question: Question, required_ingredient: str) -> Meaning
 def _require_intermediate(question: Question, required_intermediate: str) -> Meaning:
     """Return a meaning that requires that an object of this label is made and used.
 
-    For one node of the label that the kitchen does not have, the tree has a unit that needs it, and another
-    that makes it without needing it.
+    For at least one node of the label that the kitchen does not have, the tree has a unit that needs it, and
+    another that makes it and does not need it.
     """
     network = question.network
-    wanted = []
+    alternatives = []
     for o in question.labelled(required_intermediate):
         if o not in question.kitchen:
             consumers = frozenset(unit for unit in network.consumers[o] if o in question.needs(unit))
-            wanted.append([frozenset(network.producers[o]) - consumers, consumers])
-    return Meaning(requirements=[wanted])
+            alternatives.append([frozenset(network.producers[o]) - consumers, consumers])
+    return Meaning(requirements=[alternatives])
 
 
 def _singletons(units: Iterable[int]) -> list[tuple[Units, Fraction]]:
-    """Return a set for each unit, with the unit alone and the amount 1, ascending."""
+    """Return for each unit, ascending, a pair: the set of this unit alone, and the amount 1."""
     one = Fraction(1)
     return [(frozenset({unit}), one) for unit in sorted(units)]
 
@@ -264,9 +273,9 @@ def _at_most_motion(question: Question, limited_motion: str, max_uses: int) -> M
 
 
 def _at_most_utensils(question: Question, max_utensils: int) -> Meaning:
-    """Return a meaning that limits the number of different utensils, by label.
+    """Return a meaning that limits the number of different labels of utensils.
 
-    It counts the utensils among the inputs and outputs of the tree's units.
+    It counts the labels of utensils among the inputs and outputs of the tree's units.
     """
     network, utensils = question.network, question.utensils
     labels = {o: node.label for o, node in enumerate(network.objects) if node.label in utensils}
@@ -280,15 +289,15 @@ def _at_most_utensils(question: Question, max_utensils: int) -> Meaning:
 
 
 def _at_most_utensil_uses(question: Question, limited_utensil: str, max_utensil_uses: int) -> Meaning:
-    """Return a meaning that limits the number of units with an object of the utensil's label."""
+    """Return a meaning that limits the number of units with an input or output of the utensil's label."""
     units = question.touching(question.labelled(limited_utensil))
     return Meaning(counted_sets=_singletons(units), max_sum=Fraction(max_utensil_uses))
 
 
 def _at_most_price(question: Question, max_price: int) -> Meaning:
-    """Return a meaning that limits the sum of prices to ``max_price`` hundredths.
+    """Return a meaning that limits the sum of the units' prices to ``max_price`` hundredths.
 
-    It removes the units without a price.
+    It removes the units without a known price.
     """
     prices = {unit: question.price(unit) for unit in range(len(question.network))}
     unknown = frozenset(unit for unit, price in prices.items() if price is None)
@@ -297,7 +306,7 @@ def _at_most_price(question: Question, max_price: int) -> Meaning:
 
 
 def _not_both_motions(question: Question, one_motion: str, other_motion: str) -> Meaning:
-    """Return a meaning that allows units with one of the two motions, but not with both."""
+    """Return a meaning by which a tree has units with at most one of the two motions."""
     motions = [question.with_motion(motion) for motion in (one_motion, other_motion)]
     return Meaning(counted_sets=[(units, Fraction(1)) for units in motions], max_sum=Fraction(1))
 
@@ -305,8 +314,8 @@ def _not_both_motions(question: Question, one_motion: str, other_motion: str) ->
 def _before(question: Question, earlier_motion: str, later_motion: str) -> Meaning:
     """Return a meaning that bars units with the later motion that cannot come after the earlier motion.
 
-    The certificate is at a branch, on which some units are used and others excluded. Nodes that the used
-    units can make without the earlier motion are *early*. Other nodes are *late* if a unit that is not
+    On a branch of a proof, some units are used and others excluded. Nodes that the used units can make
+    without the earlier motion, and kitchen nodes, are *early*. Other nodes are *late* if a unit that is not
     excluded makes them, and has the earlier motion or needs a late node. A unit with the later motion is
     barred if it needs no late node.
     """
@@ -315,21 +324,21 @@ def _before(question: Question, earlier_motion: str, later_motion: str) -> Meani
     with_later = question.with_motion(later_motion) - with_earlier
 
     def early(used: Units) -> set[int | None]:
-        """Return the early nodes: those that ``used`` units can make without the earlier motion."""
-        available: set[int | None] = set(question.kitchen)
+        """Return the early nodes: kitchen nodes, and those that ``used`` units make without the motion."""
+        early_nodes: set[int | None] = set(question.kitchen)
         waiting = used - with_earlier
-        while runs := {unit for unit in waiting if needs(unit) <= available}:
-            available.update(o for unit in runs for o in gives(unit))
-            waiting -= runs
-        return available
+        while running := {unit for unit in waiting if needs(unit) <= early_nodes}:
+            early_nodes.update(o for unit in running for o in gives(unit))
+            waiting -= running
+        return early_nodes
 
     def barred(used: Units, without: Units) -> Units:
         """Return the units with the later motion that need no late node."""
-        available = early(used)
+        early_nodes = early(used)
         late: set[int | None] = set()
         stack = list(with_earlier - without)
         for unit in stack:  # grows while it is walked through
-            for o in gives(unit) - available - late:
+            for o in gives(unit) - early_nodes - late:
                 late.add(o)
                 consumers = network.consumers[o] if o is not None else ()
                 stack += (u for u in consumers if u not in without and o in needs(u))
@@ -345,19 +354,19 @@ OWN = "own"  # in place of a constraint's name: user rules
 def meaning_of_user_rules(rule: Rule) -> Meaning:
     """Return the meaning of claims about user rules, which a certificate takes on trust.
 
-    A claim is a pair of sets: no tree has all units of the first and none of the second. Limits on sums of
-    amounts are claims, too.
+    A claim is a pair of sets of units: no tree has all units of the first and none of the second. ``rule``
+    also has limits on sums of amounts.
     """
     claims = [(frozenset(used), frozenset(without)) for used, without in rule["claims"]]
     removed = [used for used, without in claims if len(used) == 1 and not without]
-    wanted = [[[without]] for used, without in claims if not used]
+    requirements = [[[without]] for used, without in claims if not used]
     barring_claims = [(used, without) for used, without in claims if used and (len(used) > 1 or without)]
 
     def barred(used: Units, without: Units) -> Units:
         """Return the units that claims bar (unit propagation).
 
-        A claim bars units if all units of its second set are excluded. If one unit of its first set is not
-        used, it bars this unit. If all of them are used, it bars them all.
+        A claim bars units only if all units of its second set are excluded. If exactly one unit of its first
+        set is not used, it bars this unit. If all of them are used, it bars them all.
         """
         unused = [used_together - used for used_together, excluded in barring_claims if excluded <= without]
         broken = [
@@ -372,7 +381,7 @@ def meaning_of_user_rules(rule: Rule) -> Meaning:
         for amounts, max_sum in rule["limits"]
     ]
     bars = barred if barring_claims else None
-    return Meaning(frozenset().union(*removed), wanted, barred=bars, limits=limits)
+    return Meaning(frozenset().union(*removed), requirements, barred=bars, limits=limits)
 
 
 LIBRARY: Mapping[str, Constraint] = {

@@ -44,7 +44,8 @@ class Simulation(NamedTuple):
     """The result of a simulation of a tree.
 
     ``verdict``: how the tree executes.
-    ``order``: positions in the tree, from 0, in an order that executes. Units that cannot run are omitted.
+    ``order``: the positions of the units in the tree, from 0, in an order that executes. Units that cannot
+    run are omitted.
     ``as_listed``: the obstacle in the listed order; ``None`` if the tree executes as listed.
     ``obstacle``: an obstacle in every order; ``None`` if some order executes.
 
@@ -139,8 +140,8 @@ def _waiting_cycle(
 ) -> tuple[int, ...]:
     """Return a cycle of waiting units, by position, that keeps the first waiting unit from running.
 
-    A unit waits for the units that make one of its unavailable inputs. Empty if there is no cycle. ``needs``
-    and ``gives`` have the inputs and outputs of each unit, by position.
+    A unit waits for the waiting units that make one of its unavailable inputs. Without such a cycle, return
+    an empty tuple. ``needs`` and ``gives`` have the preconditions and add effects of each unit, by position.
     """
     makers: dict[ObjectNode, list[int]] = {}
     for position in waiting:

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from foon_asp.network import STAND_IN, Edit, Network, ObjectNode, StandInTable
 
-Sides = Callable[[int], Collection[int | None]]
+Sides = Callable[[int], Collection[int | None]]  # from a unit to ids of nodes
 
 
 class Actions(NamedTuple):
@@ -30,7 +30,8 @@ class Actions(NamedTuple):
 class StandInClaim(NamedTuple):
     """The part of a certificate's claim that concerns stand-ins.
 
-    ``by_dissimilarity``: whether dissimilarity is the first objective.
+    ``by_dissimilarity``: whether dissimilarity is the first objective, or there are no objectives, and there
+    are no rules.
     ``bound``: the claimed lower bound on the dissimilarity of trees. ``None`` if nothing is claimed of it, or
     if the claim is that there is no tree.
     """
@@ -40,12 +41,15 @@ class StandInClaim(NamedTuple):
 
 
 def stand_in_price_data(table: StandInTable) -> list[list[str]]:
-    """Return the prices of a table as sorted rows of texts, for the digest of a certificate."""
+    """Return the prices of a table as sorted lists of texts, for the digest of a certificate.
+
+    A list has an edit, an edit and its word, or a pair of labels or nodes, and last the price.
+    """
     edits = [[str(edit), str(price)] for edit, price in table.edits.items()]
     words = [[str(edit), word, str(price)] for (edit, word), price in table.words.items()]
-    kinds = {str: "label", ObjectNode: "node"}
+    kind_names = {str: "label", ObjectNode: "node"}
     pairs = [
-        [kinds[type(serving)], str(serving), str(served), str(price)]
+        [kind_names[type(serving)], str(serving), str(served), str(price)]
         for (serving, served), price in table.pairs.items()
     ]
     return sorted((*edits, *words, *pairs))
@@ -54,8 +58,8 @@ def stand_in_price_data(table: StandInTable) -> list[list[str]]:
 def price_of(table: StandInTable, serving: ObjectNode, served: ObjectNode) -> Fraction | None:
     """Return the price of using ``serving`` in place of ``served``; ``None`` if the table forbids it.
 
-    The table's price of the pair of nodes takes precedence. Otherwise the prices of all differences are added
-    up.
+    If the table lists this pair of nodes, its entry decides. Otherwise, the prices of all differences between
+    the nodes are added up. A difference without a price makes the pair forbidden.
     """
     if (serving, served) in table.pairs:
         return table.pairs[serving, served]
@@ -66,25 +70,28 @@ def price_of(table: StandInTable, serving: ObjectNode, served: ObjectNode) -> Fr
             served.label
         )
         prices.append(table.edits[Edit.SPELLING] if same_word else table.pairs.get(labels))
-    items, other_items = Counter(serving.ingredients), Counter(served.ingredients)
-    if items != other_items and max(items.total(), other_items.total()) >= 2 * (items & other_items).total():
+    ingredients, other_ingredients = Counter(serving.ingredients), Counter(served.ingredients)
+    shared = (ingredients & other_ingredients).total()
+    if ingredients != other_ingredients and max(ingredients.total(), other_ingredients.total()) >= 2 * shared:
         prices.append(table.edits[Edit.CONTENTS])
-    if serving.contents != served.contents and items == other_items:
+    if serving.contents != served.contents and ingredients == other_ingredients:
         prices.append(table.edits[Edit.WORD])
-    named = [
-        *((Edit.MORE_INGREDIENT, item) for item in (items - other_items).elements()),
-        *((Edit.FEWER_INGREDIENT, item) for item in (other_items - items).elements()),
+    word_edits = [
+        *((Edit.MORE_INGREDIENT, name) for name in (ingredients - other_ingredients).elements()),
+        *((Edit.FEWER_INGREDIENT, name) for name in (other_ingredients - ingredients).elements()),
         *((Edit.MORE_STATE, state) for state in serving.states - served.states),
         *((Edit.FEWER_STATE, state) for state in served.states - serving.states),
     ]
-    prices += [table.words.get(word, table.edits[word[0]]) for word in named]
-    places = Counter(relation.object for relation in serving.relations - served.relations)
-    other_places = Counter(relation.object for relation in served.relations - serving.relations)
-    other_word = sum((places & other_places).values())
-    moved = max(sum((places - other_places).values()), sum((other_places - places).values()))
-    prices += [table.edits[Edit.WORD]] * other_word + [table.edits[Edit.CONTAINER]] * moved
-    stated = [price for price in prices if price is not None]
-    return sum(stated, Fraction(0)) if len(stated) == len(prices) else None
+    prices += [table.words.get(word_edit, table.edits[word_edit[0]]) for word_edit in word_edits]
+    containers = Counter(relation.object for relation in serving.relations - served.relations)
+    other_containers = Counter(relation.object for relation in served.relations - serving.relations)
+    word_changes = sum((containers & other_containers).values())
+    container_changes = max(
+        sum((containers - other_containers).values()), sum((other_containers - containers).values())
+    )
+    prices += [table.edits[Edit.WORD]] * word_changes + [table.edits[Edit.CONTAINER]] * container_changes
+    known_prices = [price for price in prices if price is not None]
+    return sum(known_prices, Fraction(0)) if len(known_prices) == len(prices) else None
 
 
 def stand_in_fault(
@@ -92,15 +99,15 @@ def stand_in_fault(
 ) -> str | None:
     """Return in words the first fault of the stand-ins of a network; ``None`` without one.
 
-    A node is *free* if it can be made without stand-ins. Each stand-in of the network needs a price above 0,
-    and has to serve a node that is not free. Other pairs of this kind are missing stand-ins, which is a
-    fault, too.
+    A node is *free* if it is in the kitchen or can be made without stand-ins. Each stand-in of the network
+    must have a price above 0 by the table, and serve a node that is not free. Also, the network must have a
+    stand-in for each pair of nodes with a price of which the served node is not free.
 
-    If the claim is by dissimilarity, two kinds may be missing. In one, the serving node costs more than the
-    cheapest free node that could serve. In the other, every tree with the stand-in has a dissimilarity above
-    ``claim.bound``.
+    If the claim is by dissimilarity, a stand-in may be missing in three cases. No tree needs the served node.
+    The serving node costs more than the cheapest free node that could serve. Every tree with the stand-in has
+    a dissimilarity above ``claim.bound``.
 
-    ``goals`` are the nodes that every tree makes or takes from the kitchen.
+    ``goals`` are the nodes, by id, that every tree makes or takes from the kitchen.
     """
     objects = network.objects
     stand_ins: set[tuple[int, int]] = set()
@@ -117,16 +124,17 @@ def stand_in_fault(
             return f"a stand-in serves {objects[served]}, which can be made"
     servers = _Servers(network, table, free, claim.by_dissimilarity)
     if claim.by_dissimilarity:
-        lacking = _nodes_needed(network, goals, free, actions)
+        unfree_nodes = _nodes_needed(network, goals, free, actions)
         least = _least_dissimilarities(network, servers, goals, actions)
     else:
-        lacking, least = set(range(len(objects))) - free, {}
-    for served in lacking:
+        unfree_nodes, least = set(range(len(objects))) - free, {}
+    for served in unfree_nodes:
         for serving, price in servers.prices_of(served).items():
             if (serving, served) in stand_ins:
                 continue
-            before = Fraction(0) if serving in free or claim.bound is None else least.get(serving)
-            if before is not None and (claim.bound is None or price + before <= claim.bound):
+            is_free = serving in free or claim.bound is None
+            serving_cost = Fraction(0) if is_free else least.get(serving)
+            if serving_cost is not None and (claim.bound is None or price + serving_cost <= claim.bound):
                 return f"a stand-in is missing: {objects[serving]} for {objects[served]}"
     return None
 
@@ -138,15 +146,15 @@ def _singular_word(label: str) -> str:
         return word[:-3] + {"i": "y", "o": "o"}[word[-3]]
     if len(word) > 5 and word[-4:] in {"sses", "shes", "ches"}:
         return word[:-2]
-    plural = word[-1:] == "s" and word[-2:] != "ss"
-    return word[:-1] if plural and len(word) > 3 else word
+    is_plural = word[-1:] == "s" and word[-2:] != "ss"
+    return word[:-1] if is_plural and len(word) > 3 else word
 
 
 class _Servers:
-    """The nodes that may stand in for others by a table (*serving* nodes).
+    """The nodes that may stand in for others by a table (*serving* nodes), with their prices.
 
     ``free``: the nodes that can be made without stand-ins.
-    ``nearest``: whether to omit nodes that cost more than the cheapest free node.
+    ``nearest``: whether serving nodes are omitted that cost more than the cheapest free one.
     """
 
     def __init__(self, network: Network, table: StandInTable, free: Collection[int], nearest: bool) -> None:
@@ -159,11 +167,11 @@ class _Servers:
         self._spelled: dict[str, list[int]] = {}
         for label, nodes in self._by_label.items():
             self._spelled.setdefault(_singular_word(label), []).extend(nodes)
-        self._of: dict[int, dict[int, Fraction]] = {}
+        self._prices_of: dict[int, dict[int, Fraction]] = {}
 
     def prices_of(self, served: int) -> dict[int, Fraction]:
-        """Return the price of each node that may serve in place of a node, by id; cached."""
-        if served not in self._of:
+        """Return the price of each node that may serve in place of the node ``served``, by id; cached."""
+        if served not in self._prices_of:
             objects = self._network.objects
             node = objects[served]
             priced = {
@@ -174,13 +182,13 @@ class _Servers:
             cheapest = min((price for o, price in priced.items() if o in self.free), default=None)
             if cheapest is not None and self.nearest:
                 priced = {o: price for o, price in priced.items() if price <= cheapest}
-            self._of[served] = priced
-        return self._of[served]
+            self._prices_of[served] = priced
+        return self._prices_of[served]
 
     def _candidates(self, node: ObjectNode) -> Iterator[int]:
-        """Yield the nodes that may have a price in place of ``node``, perhaps twice.
+        """Yield the nodes, by id, that may have a price in place of ``node``; a node may be yielded twice.
 
-        Their label is spelled alike, or the table lists the pair of labels or nodes.
+        Their label is spelled like that of ``node``, or the table lists the pair of labels or of nodes.
         """
         yield from self._spelled[_singular_word(node.label)]
         for serving, served in self._table.pairs:
@@ -195,10 +203,10 @@ class _Servers:
 def _least_dissimilarities(
     network: Network, servers: _Servers, goals: Sequence[int], actions: Actions
 ) -> dict[int, Fraction]:
-    """Return a lower bound on the dissimilarity of making each node that is not free (h_max).
+    """Return a lower bound on the dissimilarity of making each node that is not free, by id (h_max).
 
-    A unit costs at least as much as its most expensive input; a stand-in adds its price. Nodes that cannot be
-    made even with stand-ins are omitted, as are nodes that no goal needs.
+    A unit costs at least as much as its most expensive input; a stand-in adds its price. Nodes that no goal
+    needs, and nodes that cannot be made even with stand-ins, are omitted.
     """
     makers: dict[int, list[set[int]]] = {}
     stack = [goal for goal in goals if goal not in servers.free]
@@ -242,7 +250,7 @@ def _least_dissimilarities(
 
 
 def _nodes_made(network: Network, actions: Actions) -> set[int]:
-    """Return the nodes that can be made from the kitchen without stand-ins, and those of the kitchen."""
+    """Return the nodes, by id, that are in the kitchen or can be made from it without stand-ins."""
     units = [unit for unit, motion in enumerate(network.motions) if motion != STAND_IN]
     needs, gives = actions.needs, actions.gives
     waiting = {unit: {o for o in needs(unit) if o is not None} for unit in units}
@@ -270,9 +278,9 @@ def _nodes_made(network: Network, actions: Actions) -> set[int]:
 def _nodes_needed(
     network: Network, goals: Sequence[int], free: Collection[int], actions: Actions
 ) -> set[int]:
-    """Return the nodes that are not free and that a tree may need.
+    """Return the nodes, by id, that a tree may need and that are not free.
 
-    They are goals and, recursively, inputs of their achievers.
+    They are goals and, recursively, preconditions of their achievers.
     """
     needed = {goal for goal in goals if goal not in free}
     stack = list(needed)

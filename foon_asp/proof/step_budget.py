@@ -15,7 +15,7 @@ class StepBudget:
         self.max_steps = self.steps_left = max_steps
 
     def spend(self, steps: int) -> None:
-        """Count steps of the check; raises :class:`LimitError` if there are too many."""
+        """Subtract steps from those left; raise :class:`LimitError` if they do not suffice."""
         self.steps_left -= steps
         if self.steps_left < 0:
             raise LimitError(f"to check it takes more than {self.max_steps:,} steps")
@@ -23,8 +23,8 @@ class StepBudget:
     def spend_on_fractions(self, bits: int, times: int = 1) -> None:
         """Count the steps of ``times`` operations on fractions of ``bits`` bits.
 
-        The steps grow with the square of the bits. Raises :class:`LimitError` if the fractions or the check
-        are too long.
+        The steps of an operation grow with the square of the bits. Raises :class:`LimitError` if the
+        fractions are too long or the steps left do not suffice.
         """
         if bits > ALLOWED.sum_bits:
             raise LimitError("its fractions add up to numbers that are too long")

@@ -60,11 +60,15 @@ class ScheduleResources(NamedTuple):
     tools: Mapping[ToolName, int | None]
 
     def is_limited(self, problem: Problem, label: str) -> bool:
-        """Return whether objects of a label are tools in limited number, so that steps may wait for them."""
+        """Return whether objects of a label are tools in limited number, so that steps may wait for them.
+
+        If ``tools`` lists the label, they are unless it says that their number is unlimited. Otherwise, they
+        are if ``tools`` lists a node with the label, or if the label is a utensil.
+        """
         if label in self.tools:
             return self.tools[label] is not None
-        named = any(isinstance(name, ObjectNode) and name.label == label for name in self.tools)
-        return named or label in problem.utensils
+        is_node_listed = any(isinstance(name, ObjectNode) and name.label == label for name in self.tools)
+        return is_node_listed or label in problem.utensils
 
     def is_unlimited(self, label: str) -> bool:
         """Return whether ``tools`` says that the number of a label is unlimited.
@@ -90,12 +94,12 @@ class ScheduleResources(NamedTuple):
     def number_of(self, problem: Problem, name: ToolName) -> int:
         """Return the number of tools of a name.
 
-        It is the number in ``tools``, or else the number of such nodes in the stock of the problem, at least
-        1.
+        It is the number in ``tools``. Without such a number, it is the number of nodes of this name in the
+        stock of the problem, and at least 1.
         """
-        stated = self.tools.get(name)
-        if stated is not None:
-            return stated
+        listed_number = self.tools.get(name)
+        if listed_number is not None:
+            return listed_number
         stock = {} if problem.items is None else problem.items.stock
         return max(1, sum(n for node, n in stock.items() if self.counted_name(node, node.label) == name))
 
@@ -106,8 +110,8 @@ class ToolNeed(NamedTuple):
     ``kept``: preconditions that stay as they are.
     ``changed``: preconditions that are no outputs.
     ``made``: outputs that the unit makes.
-    ``others``: inputs of the label that the container rule skips. If the label is neither an input nor an
-    output, it is one input that is in, on or at such a tool, or ``None``.
+    ``others``: inputs of the label that the container rule skips. If no input or output has the label, it has
+    one entry for the tool: an input that is in, on or at it, or ``None`` if there is none.
     """
 
     kept: tuple[ObjectNode, ...]
@@ -125,15 +129,15 @@ class ToolNeed(NamedTuple):
 
 
 def tools_needed(problem: Problem, resources: ScheduleResources, unit: FunctionalUnit) -> dict[str, ToolNeed]:
-    """Return the tools that a unit needs, by label, if their number is limited.
+    """Return what a unit needs of each tool in limited number, by label of the tool.
 
-    They are its utensils, and the tools that its inputs or outputs are in, on or at.
+    These tools are inputs and outputs of the unit, and the containers that those are in, on or at.
     """
     preconditions, _, made = Executions(problem).of(unit)
     tool_needs: dict[str, ToolNeed] = {}
     nodes = (*dict.fromkeys(unit.inputs), *unit.outputs)
-    places = (relation.object for node in nodes for relation in node.relations)
-    for label in dict.fromkeys([*(node.label for node in nodes), *places]):
+    containers = (relation.object for node in nodes for relation in node.relations)
+    for label in dict.fromkeys([*(node.label for node in nodes), *containers]):
         if not resources.is_limited(problem, label):
             continue
         own_inputs = [node for node in dict.fromkeys(unit.inputs) if node.label == label]
@@ -155,9 +159,9 @@ def timetable_fault(
 ) -> str | None:
     """Return in words the first fault of a schedule of a plan; ``None`` without one.
 
-    Steps have to take the durations in ``resources``. At each moment, there have to be enough copies for all
-    running steps. Each agent and each tool may be at only one step. A tool has to be in the state in which an
-    earlier step left it, or as the kitchen has it.
+    Numbers of steps in the words are from 1. Steps have to take the durations in ``resources``. At each
+    moment, there have to be enough copies for all running steps. Each agent and each tool may be at only one
+    step. A tool has to be in the state in which an earlier step left it, or as the kitchen has it.
 
     ``steps`` has the times of each unit of ``plan``, in the same order. Items of the problem have to be used
     up (:func:`foon_asp.proof.replay.replayable_problem`).
@@ -199,22 +203,22 @@ class _Run:
 
         Of events at the same time, ends of steps come first.
         """
-        events = [(step.end, False, number) for number, step in enumerate(self._steps)]
-        events += [(step.start, True, number) for number, step in enumerate(self._steps)]
-        for _, starts, number in sorted(events):
+        events = [(step.end, False, position) for position, step in enumerate(self._steps)]
+        events += [(step.start, True, position) for position, step in enumerate(self._steps)]
+        for _, starts, position in sorted(events):
             if not starts:
-                self._end_step(number)
-            elif fault := next(self._start_step(number), None):
-                return f"step {number + 1} ({self._plan[number].motion}) {fault}"
+                self._end_step(position)
+            elif fault := next(self._start_step(position), None):
+                return f"step {position + 1} ({self._plan[position].motion}) {fault}"
         return None
 
-    def _start_step(self, number: int) -> Iterator[str]:
+    def _start_step(self, position: int) -> Iterator[str]:
         """Start a step, and yield in words each reason why it cannot start.
 
-        If there is none, its copies, agent and tools are taken from the kitchen. ``number`` is the position
-        of the step, from 0.
+        If there is none, its copies, agent and tools are taken from the kitchen. ``position`` is that of the
+        step in the schedule, from 0.
         """
-        unit, step = self._plan[number], self._steps[number]
+        unit, step = self._plan[position], self._steps[position]
         occupied = _resources_of(step)
         if len(set(occupied)) < len(occupied):
             yield "has the same tool twice"
@@ -226,17 +230,19 @@ class _Run:
         for node, amount in needed.items():
             if self._executions.is_endless(node):
                 continue
-            goes = consumes.get(node, 0)
-            in_use = 0 if self._resources.is_unlimited(node.label) and not goes else self._copies_read[node]
+            consumed = consumes.get(node, 0)
+            in_use = (
+                0 if self._resources.is_unlimited(node.label) and not consumed else self._copies_read[node]
+            )
             if self._copies[node] < in_use + amount:
                 yield f"lacks a copy of {node}"
-            self._copies[node] -= goes
-            self._copies_read[node] += amount - goes
-        self._step_using.update(dict.fromkeys(occupied, number))
+            self._copies[node] -= consumed
+            self._copies_read[node] += amount - consumed
+        self._step_using.update(dict.fromkeys(occupied, position))
 
-    def _end_step(self, number: int) -> None:
+    def _end_step(self, position: int) -> None:
         """End a step: add its outputs, update the states of its tools, and release its tools and agent."""
-        unit, step = self._plan[number], self._steps[number]
+        unit, step = self._plan[position], self._steps[position]
         needed, consumes, made = self._executions.of(unit)
         for node, amount in needed.items():
             # endless nodes get negative numbers, which nothing reads
@@ -249,7 +255,7 @@ class _Run:
             self._step_using.pop(resource, None)
 
     def _tool_faults(self, unit: FunctionalUnit, tools: Sequence[Tool]) -> Iterator[str]:
-        """Yield in words each fault of the tools with which a step starts.
+        """Yield in words each fault of the tools with which a step of ``unit`` starts.
 
         A tool that holds no needed object counts as fetched from the kitchen: what it held is forgotten.
         """
@@ -258,9 +264,9 @@ class _Run:
         preconditions = self._executions.of(unit).preconditions
         brought = Counter(tool.label for tool in tools)
         for label in tool_needs.keys() | brought.keys():
-            wanted = tool_needs[label].number if label in tool_needs else 0
-            if brought[label] != wanted:
-                yield f"has {brought[label]} of {label}, and asks for {wanted}"
+            needed_number = tool_needs[label].number if label in tool_needs else 0
+            if brought[label] != needed_number:
+                yield f"has {brought[label]} of {label}, and asks for {needed_number}"
         for tool in tools:
             if not 1 <= tool.number <= resources.number_of(problem, tool.name):
                 yield f"has {tool}, and there are {resources.number_of(problem, tool.name)}"

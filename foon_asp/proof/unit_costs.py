@@ -45,14 +45,17 @@ class UnitCosts:
     ``rates``: the success rate of each motion; empty unless an objective depends on rates.
     ``fractional_rates``: these rates, without 0 and 1.
     ``prices``: the price of each unit, by id; empty unless ``price`` is an objective.
+    ``trusted_costs``: the stated costs that were used so far, by measure and unit id.
+    ``are_multiples``: a cached function from the index of an objective and a number. It returns whether all
+    costs by the objective are multiples of the number.
     """
 
     def __init__(self, certificate: Mapping[str, Any], subject: Subject, budget: StepBudget) -> None:
         """Read the objectives and measures of a certificate; refuse data that lack what a cost depends on."""
         self.network, self.kitchen, self.stand_ins = subject.network, subject.kitchen, subject.stand_ins
         self.budget = budget
-        self.are_multiples = cache(self._are_multiples)  # of a number, by an objective
-        self.trusted_costs: dict[str, dict[int, Fraction]] = {}  # costs by measures that the proof uses
+        self.are_multiples = cache(self._are_multiples)
+        self.trusted_costs: dict[str, dict[int, Fraction]] = {}
         self.objectives = tuple(read_list(certificate["objective"]))
         measures = read_object(certificate.get("measures", {}))
         self.measures = {name: self._read_measure(name, stated) for name, stated in measures.items()}
@@ -61,13 +64,17 @@ class UnitCosts:
             "an objective is unknown",
         )
         require(len(set(self.objectives)) == len(self.objectives), "an objective stands twice")
-        by_rates = {"success", "attempts"} & set(self.objectives)
-        self.rates = self._required_rates(subject.rates) if by_rates else {}
+        needs_rates = not {"success", "attempts"}.isdisjoint(self.objectives)
+        self.rates = self._required_rates(subject.rates) if needs_rates else {}
         self.fractional_rates = frozenset(self.rates.values()) - {0, 1}
         self.prices = self._required_prices(subject.prices) if "price" in self.objectives else []
 
     def _read_measure(self, name: str, stated: Any) -> Trusted:
-        """Return the statement of a certificate about what units cost by a measure; check its digest."""
+        """Return the statement of a certificate about what units cost by a measure.
+
+        Refuse an unfit name, a wrong digest, costs below 0, and two costs of one unit. No cost counts as used
+        yet.
+        """
         require(
             bool(_MEASURE_NAME.fullmatch(name)) and name not in OBJECTIVES, "a measure has no name of its own"
         )
@@ -97,9 +104,9 @@ class UnitCosts:
         return costs[unit]
 
     def _required_rates(self, given_rates: Mapping[str, Fraction] | None) -> dict[str, Fraction]:
-        """Return the success rate of each motion of the network; refuse missing rates and rates not in 0..1.
+        """Return the success rate of each motion of the network; refuse missing rates.
 
-        With the objective ``attempts``, a rate of 0 is refused, too.
+        Rates below 0 or above 1 are refused. With the objective ``attempts``, a rate of 0 is refused as well.
         """
         motions = self.network.different_motions
         rates = {
@@ -107,11 +114,11 @@ class UnitCosts:
             for motion in motions
             if given_rates is not None and motion in given_rates
         }
-        values = None if given_rates is None else [*rates.values()]
-        values_found = self._require_complete(values, len(motions), "success rates")
-        require(all(rate <= 1 for rate in values_found), "a rate is above 1")
+        given_values = None if given_rates is None else [*rates.values()]
+        found_rates = self._require_complete(given_values, len(motions), "success rates")
+        require(all(rate <= 1 for rate in found_rates), "a rate is above 1")
         require(
-            "attempts" not in self.objectives or 0 not in values_found,
+            "attempts" not in self.objectives or 0 not in found_rates,
             "a unit that never succeeds is repeated forever",
         )
         return rates
@@ -139,23 +146,24 @@ class UnitCosts:
         return present
 
     def cost(self, member: int) -> Amount:
-        """Return the cost of a unit or an item, with a part for each objective that counts it."""
+        """Return the cost of a unit or item as an amount, with a part for each objective that counts it."""
         cost: Amount = {}
         for level, objective in enumerate(self.objectives):
-            figure = self._cost_by_objective(level, member)
-            if figure is not None:
-                cost[level, self.rate(member) if objective == "success" else None] = figure
+            value = self._cost_by_objective(level, member)
+            if value is not None:
+                cost[level, self.rate(member) if objective == "success" else None] = value
         return cost
 
     def _cost_by_objective(self, level: int, member: int) -> Fraction | None:
         """Return the cost of a unit or an item by an objective; ``None`` if the objective does not count it.
 
-        ``level`` is the index of the objective. By ``success``, it is 1, the exponent of the unit's rate.
+        ``level`` is the index of the objective. By ``success``, return 1, the exponent of the unit's rate. By
+        a measure, the stated cost is recorded as used.
         """
         network, objective = self.network, self.objectives[level]
-        item = member >= len(network)
-        if item or objective == "kitchen":
-            return Fraction(1) if item and objective == "kitchen" else None
+        is_item = member >= len(network)
+        if is_item or objective == "kitchen":
+            return Fraction(1) if is_item and objective == "kitchen" else None
         if objective in {"units", "success"}:
             return Fraction(1)
         if objective == "attempts":
@@ -184,7 +192,8 @@ class UnitCosts:
         """Return the cost of a tree by each objective, as written in a certificate.
 
         ``units`` are the units of the tree, and ``total`` is its cost as an amount. By ``success``, the cost
-        is the product of the rates. Costs that are too long to be written are refused.
+        is the product of the rates; a product of 0 is refused. Raises :class:`LimitError` if a cost is too
+        long to be written.
         """
         costs: list[int | Fraction] = []
         for level, objective in enumerate(self.objectives):
@@ -195,11 +204,11 @@ class UnitCosts:
                     raise LimitError("the success rate of the tree is too long a number to be written")
                 costs.append(math.prod(rates, start=Fraction(1)))
             else:
-                figure = total.get((level, None), Fraction(0))
-                if max(figure.numerator, figure.denominator).bit_length() > ALLOWED.written_bits:
+                value = total.get((level, None), Fraction(0))
+                if max(value.numerator, value.denominator).bit_length() > ALLOWED.written_bits:
                     raise LimitError("what the tree costs is too long a number to be written")
-                sums = {"attempts", "price", "dissimilarity", *self.measures}
-                costs.append(figure if objective in sums else int(figure))
+                fractional = {"attempts", "price", "dissimilarity", *self.measures}
+                costs.append(value if objective in fractional else int(value))
         return costs
 
     def _are_multiples(self, level: int, multiple: Fraction) -> bool:
@@ -222,7 +231,8 @@ class UnitCosts:
     def read_amount(self, stated: Any) -> Amount:
         """Return a weight or bound as an amount, from a list with one entry for each objective.
 
-        An entry is a fraction or, for ``success``, an object from rate to exponent.
+        An entry is a fraction or, for ``success``, an object from rate to exponent. Rates that no motion has,
+        and rates of 0 or 1, are refused. Without objectives, the list has one fraction.
         """
         amount: Amount = {}
         entries = read_list(stated)
@@ -242,7 +252,7 @@ class UnitCosts:
         return amount
 
     def trusted_measures(self) -> tuple[Trusted, ...]:
-        """Return the measures among the objectives, with the stated costs that were used so far."""
+        """Return the measures that are objectives, each with the stated costs that were used so far."""
         return tuple(
             measure._replace(costs=self.trusted_costs[name])
             for name, measure in self.measures.items()
@@ -259,15 +269,17 @@ def prices_by_id(network: Network, unit_prices: UnitPrices | None) -> Sequence[F
     if unit_prices is None:
         return [None] * len(network)
     detailed = network.detailed or network
-    own = {detailed.unit_id(unit): price for unit, price in unit_prices.units.items()}
-    prices = [own.get(unit, unit_prices.motions.get(motion)) for unit, motion in enumerate(detailed.motions)]
+    own_prices = {detailed.unit_id(unit): price for unit, price in unit_prices.units.items()}
+    prices = [
+        own_prices.get(unit, unit_prices.motions.get(motion)) for unit, motion in enumerate(detailed.motions)
+    ]
     if network.detailed is not None:
         details_prices = [[prices[detail] for detail in details] for details in network.stands_for]
         known_prices = [
             [price for price in detail_prices if price is not None] for detail_prices in details_prices
         ]
         prices = [
-            min(stated) if len(stated) == len(detail_prices) else None
-            for stated, detail_prices in zip(known_prices, details_prices, strict=True)
+            min(known_of_unit) if len(known_of_unit) == len(detail_prices) else None
+            for known_of_unit, detail_prices in zip(known_prices, details_prices, strict=True)
         ]
     return prices

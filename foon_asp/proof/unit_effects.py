@@ -9,12 +9,15 @@ from foon_asp.network import Network, node_at_level
 class UnitEffects:
     """The preconditions (``needs``) and add effects (``gives``) of units, without nodes that constraints add.
 
-    ``containers`` is the container rule, and ``utensils`` are the labels of utensils.
+    ``needs`` and ``gives`` are cached functions from a unit id to ids of nodes. An id of ``None`` stands for
+    nodes that the network does not have.
+
+    ``containers`` is the container rule, ``strict`` or ``implied``; ``utensils`` are the labels of utensils.
     """
 
     def __init__(self, network: Network, containers: str, utensils: Collection[str]) -> None:
         self.network, self.containers, self.utensils = network, containers, utensils
-        self.needs, self.gives = cache(self._needs), cache(self._gives)  # of a unit
+        self.needs, self.gives = cache(self._needs), cache(self._gives)
 
     def _needs(self, unit: int) -> frozenset[int | None]:
         """Return the preconditions of a unit, without nodes that constraints add.

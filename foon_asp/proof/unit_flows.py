@@ -18,7 +18,7 @@ class Flow(NamedTuple):
 
 
 class UnitFlows:
-    """The flows of the units of a network.
+    """The flows of the units of a network; ``flow`` is a cached function from a unit id to its flow.
 
     ``effects``: the preconditions and add effects of units.
     ``utensils``: the labels of utensils.
@@ -39,12 +39,13 @@ class UnitFlows:
         self.network, self.needs, self.gives = network, effects.needs, effects.gives
         self.utensils, self.amounts, self.stays_stated = utensils, amounts, stays_stated
         self.budget = budget
-        self.flow = cache(self._flow)  # of a unit
+        self.flow = cache(self._flow)
 
     def _flow(self, unit: int) -> Flow:
         """Return the copies that one execution of a unit needs, consumes and adds.
 
-        Of an output that is also an input, only the surplus over the input is added.
+        Of an output that is also an input, only the surplus over the input is added. The work counts as steps
+        of the check.
         """
         network, inputs = self.network, self.network.inputs[unit]
         input_amounts, output_amounts = self.amounts.get(unit, ({}, {}))
@@ -65,8 +66,9 @@ class UnitFlows:
         """Return how many of the ``amount`` copies of an input remain after a unit has run.
 
         The certificate may state that all or none remain. Otherwise, an output with the label of the input
-        decides: the ``made`` copies of the same node remain, at most ``amount``. Without such an output, the
-        rule for utensils and places decides (:meth:`_stays_by_rule`).
+        decides: if the input is an output itself, ``made`` copies of it remain, but at most ``amount``; if
+        not, none remain. Without such an output, the rule for utensils and places decides
+        (:meth:`_stays_by_rule`).
         """
         objects, network = self.network.objects, self.network
         node = objects[o]
@@ -81,14 +83,14 @@ class UnitFlows:
     def _stays_by_rule(self, unit: int, node: ObjectNode, outputs: Sequence[ObjectNode]) -> bool:
         """Return whether an input stays although no output has its label.
 
-        A utensil stays if it is empty, or if an output is in, on or at it. An input that is in another input
-        stays if an output with that one's label still contains it.
+        A utensil stays if it is empty, or if an output is in, on or at it. An input that is in another input,
+        its container, stays if an output with the label of the container still contains it.
         """
         objects, network = self.network.objects, self.network
         if node.label in self.utensils:
-            holds = any(contents.ingredients for contents in node.contents)
-            if not holds or any(output.is_in(node.label) for output in outputs):
+            is_empty = not any(contents.ingredients for contents in node.contents)
+            if is_empty or any(output.is_in(node.label) for output in outputs):
                 return True
-        inputs = {objects[taken_input].label for taken_input in network.inputs[unit]}
-        around = {relation.object for relation in node.relations} & inputs
-        return any(output.label in around and node.label in output.ingredients for output in outputs)
+        input_labels = {objects[o].label for o in network.inputs[unit]}
+        containers = {relation.object for relation in node.relations} & input_labels
+        return any(output.label in containers and node.label in output.ingredients for output in outputs)

@@ -49,8 +49,10 @@ def used_up_run(problem: Problem, tree: Iterable[FunctionalUnit]) -> UsedUpRun:
     if problem.network.level < 3:
         return UsedUpRun(None, proved=False)
     executions = Executions(problem)
-    executed, wanted = [executions.of(unit) for unit in tree], executions.wanted_copies()
-    nodes = set(wanted).union(*(copies for step in executed for copies in (step.preconditions, step.adds)))
+    executed, wanted_copies = [executions.of(unit) for unit in tree], executions.wanted_copies()
+    nodes = set(wanted_copies).union(
+        *(copies for step in executed for copies in (step.preconditions, step.adds))
+    )
     endless = set(filter(executions.is_endless, nodes))
 
     def without_endless(copies: Mapping[ObjectNode, int]) -> Mapping[ObjectNode, int]:
@@ -60,7 +62,7 @@ def used_up_run(problem: Problem, tree: Iterable[FunctionalUnit]) -> UsedUpRun:
         return {node: n for node, n in copies.items() if node not in endless}
 
     steps = [Execution(*map(without_endless, step)) for step in executed]
-    stock, goals = executions.initial_copies(), without_endless(wanted)
+    stock, goals = executions.initial_copies(), without_endless(wanted_copies)
     first_shortage = _shortage_as_listed(steps, stock, goals)
     if first_shortage is None:
         return UsedUpRun(tuple(range(len(steps))))
@@ -76,7 +78,7 @@ def used_up_run(problem: Problem, tree: Iterable[FunctionalUnit]) -> UsedUpRun:
 def _shortage_as_listed(
     steps: Sequence[Execution], stock: Mapping[ObjectNode, int], goals: Mapping[ObjectNode, int]
 ) -> Shortage | None:
-    """Execute the steps as listed; return the first shortage of a step or a goal, ``None`` without one."""
+    """Execute the steps as listed; return the first shortage of a step or goal, or ``None`` without one."""
     copies, consumers = dict(stock), dict[ObjectNode, list[int]]()
 
     def missing(step: int | None, required: Mapping[ObjectNode, int]) -> Shortage | None:
@@ -104,9 +106,10 @@ def _shortage_as_listed(
 def _total_shortage(
     steps: Sequence[Execution], stock: Mapping[ObjectNode, int], goals: Mapping[ObjectNode, int]
 ) -> Shortage | None:
-    """Return a shortage that every order has: more copies of a node are used up than exist in total.
+    """Return a shortage that every order of the steps has; ``None`` without one.
 
-    The total is the stock and the copies that all steps add. ``None`` if there is no such node.
+    A node has such a shortage if more copies of it are used up than exist in total: in stock and added by any
+    step. A goal has one if steps use up copies of it, and all steps together leave fewer than are wanted.
     """
     copies = dict(stock)
     for step in steps:
@@ -115,10 +118,10 @@ def _total_shortage(
     consumers: dict[ObjectNode, list[int]] = {}
     for position, step in enumerate(steps):
         for node, amount in step.consumes.items():
-            present = copies.get(node, 0)
-            if present < amount:
+            remaining = copies.get(node, 0)
+            if remaining < amount:
                 return Shortage(position, node, tuple(consumers.get(node, ())), amount)
-            copies[node] = present - amount
+            copies[node] = remaining - amount
             consumers.setdefault(node, []).append(position)
     lacking = (node for node, n in goals.items() if copies.get(node, 0) < n and node in consumers)
     goal = next(lacking, None)
@@ -129,7 +132,8 @@ class _OrderSearch:
     """A depth-first search for an order of steps, which tries steps in the order listed.
 
     ``looks_left``: the number of steps that the search may still examine; at 0, it is given up.
-    ``dead_end``: the shortage after the longest partial order; ``None`` if there is none so far.
+    ``dead_end``: the shortage after the longest partial order that could not be continued so far; ``None`` if
+    there is no such order, or no shortage of a node of which copies were used up.
     """
 
     def __init__(
@@ -153,9 +157,10 @@ class _OrderSearch:
                 self._most_read[node] = max(self._most_read[node], read)
 
     def find_order(self) -> tuple[int, ...] | None:
-        """Return the steps in an order that runs; ``None`` if none is found.
+        """Return the steps in an order that runs; ``None`` if there is none or the search is given up.
 
-        The caller has made sure that no node is overdrawn. The copies of goals then suffice at the end.
+        It also sets ``dead_end`` and ``looks_left``. The caller has made sure that no node is overdrawn. The
+        copies of goals then suffice at the end.
         """
         done: list[int] = []
         dead: set[int] = set()  # sets of done steps that no order continues
@@ -180,11 +185,11 @@ class _OrderSearch:
         return None
 
     def _next_steps(self, dead: set[int]) -> Iterator[int]:
-        """Yield the waiting steps that can be next.
+        """Yield the waiting steps that can be next, in the order listed.
 
-        The search may end at a step that leaves enough copies for all waiting steps. If no order continues
-        with it, none continues with another. ``dead`` has sets of done steps, as bit masks, from which no
-        order continues: then nothing is yielded.
+        A step that leaves enough copies for all other waiting steps is the last one yielded. If no order
+        continues with it, none continues with another. ``dead`` has sets of done steps, as bit masks, from
+        which no order continues. If the steps done now are such a set, nothing is yielded.
         """
         end = len(self._steps)
         step = end if self._done in dead else self._next[end]
@@ -198,15 +203,15 @@ class _OrderSearch:
             step = self._next[step]
 
     def _missing_copies(self, done: Sequence[int]) -> Shortage | None:
-        """Return the shortage of a waiting step that lacks a node which some step in ``done`` used up.
+        """Return the shortage of the first waiting step that lacks a node which a step in ``done`` used up.
 
-        ``None`` if there is no such step.
+        Return ``None`` if there is no such step.
         """
         step = self._next[-1]
         while step != len(self._steps):
             for node, amount in self._steps[step].preconditions.items():
                 consumers = tuple(
-                    earlier for earlier in sorted(done) if node in self._steps[earlier].consumes
+                    done_step for done_step in sorted(done) if node in self._steps[done_step].consumes
                 )
                 if consumers and self._copies[node] < amount:
                     return Shortage(step, node, consumers, amount)
@@ -214,14 +219,14 @@ class _OrderSearch:
         return None
 
     def _is_plentiful(self, node: ObjectNode) -> bool:
-        """Return whether a node has copies for all waiting steps and for the goals."""
+        """Return whether a node has enough copies for all waiting steps and for the goals, in any order."""
         reserved = max(self._goals.get(node, 0), self._most_read[node] if self._readers[node] else 0)
         return self._copies[node] >= self._consumers[node] + reserved
 
     def _do_step(self, step: int) -> None:
         """Execute a step that waits, and take it out of the ring of waiting steps."""
-        before, after = self._previous[step], self._next[step]
-        self._next[before], self._previous[after] = after, before
+        previous, following = self._previous[step], self._next[step]
+        self._next[previous], self._previous[following] = following, previous
         self._execute(step, 1)
 
     def _undo_step(self, step: int) -> None:

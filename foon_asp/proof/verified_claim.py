@@ -14,7 +14,8 @@ class Trusted(NamedTuple):
     ``name``: the name of the measure.
     ``rules``: the text of the rules that define the measure.
     ``sha256``: the digest of this text.
-    ``costs``: the costs by unit id, as stated. No unit has a negative cost; this is taken on trust, too.
+    ``costs``: the costs by unit id, as stated. That no other unit costs less than 0 is taken on trust as
+    well.
     """
 
     name: str
@@ -37,7 +38,7 @@ class ItemClaims(NamedTuple):
 
 
 class Verified(NamedTuple):
-    """What a certificate proves about the data it was checked with.
+    """The claim that a certificate proves about the data that it was checked with.
 
     ``claim`` is one of three. ``optimal``: no tree is better than ``tree`` by the ``objectives``, most
     important first. ``bound``: no tree costs less than the certificate's bound. ``infeasible``: there is no

@@ -111,49 +111,51 @@ class Check:
         self.used_cuts: set[int] = set()  # the cuts that the proof uses
 
     def _check_stand_ins(self, least: Fraction | None) -> None:
-        """Refuse a network whose stand-ins do not agree with their table, if it has a table.
+        """Refuse a network whose stand-ins do not agree with their table; without a table, do nothing.
 
-        ``least`` is the claimed lower bound on the dissimilarity of trees, ``None`` if no tree exists.
+        ``least`` is the claimed lower bound on the dissimilarity of trees. It is ``None`` if the claim is
+        that no tree exists.
         """
         if self.stand_ins is None:
             return
-        steps = [unit for rule in self.rules if rule["rule"] == ALL_STEPS for unit in rule["units"]]
-        ruled = any(rule["rule"] != ALL_STEPS for rule in self.rules)
-        by_dissimilarity = self.objectives[:1] in {(), ("dissimilarity",)} and not ruled
+        required_units = [unit for rule in self.rules if rule["rule"] == ALL_STEPS for unit in rule["units"]]
+        is_ruled = any(rule["rule"] != ALL_STEPS for rule in self.rules)
+        by_dissimilarity = self.objectives[:1] in {(), ("dissimilarity",)} and not is_ruled
         claim = StandInClaim(by_dissimilarity, least if by_dissimilarity else None)
         actions = Actions(self.kitchen, self.needs, self.gives)
-        inputs = (o for unit in steps for o in self.needs(unit) if o is not None)
-        wanted = [*dict.fromkeys((*self.goals, *inputs))]  # made or taken by every tree
-        wrong = stand_in_fault(self.network, self.stand_ins, actions, wanted, claim)
-        require(wrong is None, f"{wrong}")
+        inputs = (o for unit in required_units for o in self.needs(unit) if o is not None)
+        needed_nodes = [*dict.fromkeys((*self.goals, *inputs))]  # made or taken by every tree
+        fault = stand_in_fault(self.network, self.stand_ins, actions, needed_nodes, claim)
+        require(fault is None, f"{fault}")
 
     def verify_claim(self) -> Verified:
-        """Check the tree, its costs and the proof; return what is proved.
+        """Check the tree, its costs, the stand-ins and the proof; return what is proved.
 
-        Refuse the certificate at the first fault.
+        Refuse the certificate at the first fault. A cut that the proof does not use is a fault.
         """
-        claim, listed, proof = (self.certificate[key] for key in ("claim", "tree", "proof"))
+        claim, stated_tree, proof = (self.certificate[key] for key in ("claim", "tree", "proof"))
         costs: list[int | Fraction] | None = None
         amount: Amount = {}
-        if listed is not None:
+        if stated_tree is not None:
             require(bool(self.objectives), "a tree is given, but no objective")
-            amount, costs = self._execute(read_list(listed))
+            amount, costs = self._execute(read_list(stated_tree))
             computed = json.dumps([str(c) if isinstance(c, Fraction) else c for c in costs])
-            stated = json.dumps(self.certificate["costs"])  # which tells 1 from True and from 1.0
-            require(stated == computed, f"the tree costs {computed}, not what is stated")
+            stated_costs = json.dumps(self.certificate["costs"])  # which tells 1 from True and from 1.0
+            require(stated_costs == computed, f"the tree costs {computed}, not what is stated")
         else:
             require(self.certificate["costs"] is None, "costs are given, but no tree")
         if claim == "infeasible":
-            require(listed is None and not self.objectives, "there cannot be a tree")
+            require(stated_tree is None and not self.objectives, "there cannot be a tree")
             require(self.certificate["bound"] is None, "a bound is given where there is nothing to bound")
         elif claim == "optimal":
-            require(listed is not None, "expected the tree that is optimal")
+            require(stated_tree is not None, "expected the tree that is optimal")
             require(self.certificate["bound"] is None, "the bound of an optimal tree is what it costs")
         elif claim == "bound":
             require(bool(self.objectives), "expected objectives")
             bound = self.unit_costs.read_amount(self.certificate["bound"])
             require(
-                listed is None or self.arithmetic.sign(self.arithmetic.sum([amount, negate(bound)])) >= 0,
+                stated_tree is None
+                or self.arithmetic.sign(self.arithmetic.sum([amount, negate(bound)])) >= 0,
                 "the bound is false",
             )
             amount = bound
@@ -170,7 +172,7 @@ class Check:
             self.objectives,
             self.rules,
             self.not_covered,
-            None if listed is None else tuple(listed),
+            None if stated_tree is None else tuple(stated_tree),
             None if costs is None else tuple(costs),
             len(self.cuts),
             self.unit_costs.trusted_measures(),
@@ -263,16 +265,17 @@ class Check:
                 require(self._is_enough([total, used_cost], least), "the weights do not add up to enough")
 
     def _above_cutoff(self, choices: Any, decided: frozenset[int]) -> list[int]:
-        """Return the members that a reduced-cost fixing claims to be above the cutoff.
+        """Return the members that a node of the proof excludes because they cost too much.
 
-        Refuse an empty list, double members, and members in ``decided``, which are used or excluded already.
+        This is reduced-cost fixing. That they cost too much is not checked here. Refuse an empty list, double
+        members, and members in ``decided``, which are used or excluded already.
         """
-        actions = [self._read_branch_member(choice) for choice in read_list(choices)]
-        require(len(actions) > 0, "nothing is too dear")
+        members = [self._read_branch_member(choice) for choice in read_list(choices)]
+        require(len(members) > 0, "nothing is too dear")
         require(
-            decided.isdisjoint(actions) and len(set(actions)) == len(actions), "what is dear is decided twice"
+            decided.isdisjoint(members) and len(set(members)) == len(members), "what is dear is decided twice"
         )
-        return actions
+        return members
 
     def _is_enough(self, bound: Iterable[Amount], least: Amount | None) -> bool:
         """Return whether the sum of ``bound`` is at least ``least`` or, if ``least`` is ``None``, above 0."""
@@ -289,9 +292,10 @@ class Check:
         ``used``. With a certain member, the cost is higher by at least the reduced cost of the member.
         Members in ``without`` are excluded.
 
-        ``weights`` and ``limits`` are rows of a proof: the weights of cuts and of limits. A member may carry
-        more than its cost: the weight of a limit for each unit that it consumes of the limit. In return, this
-        weight is subtracted from the sum for each unit of the limit that ``used`` leaves.
+        ``weights`` and ``limits`` are rows of a proof: the weights of cuts and of limits. If a limit has a
+        weight, the weights of a member's cuts may exceed its cost by this weight times the member's amount in
+        the limit. In return, the weight times what ``used`` leaves of the limit is subtracted from the sum.
+        Refuse weights of cuts that exceed the cost by more. The cuts count as used by the proof.
         """
         total: Amount = {}
         carried: list[tuple[Amount, Mapping[int, Fraction]]] = []
@@ -322,11 +326,10 @@ class Check:
             return {key: Fraction(load.get(member, 0), scales[key]) for key, load in loads.items()}
 
         def allowed(member: int) -> Amount:
-            """Return the greatest load of a member: its cost, and the weights of limits that it consumes.
+            """Return the greatest load of a member: its cost, and the weights of limits by its amounts.
 
-            It is 0 for a used member, whose cost was paid before.
+            It is 0 for a used member, whose cost is added apart.
             """
-            # the cost of a used member was paid before
             capacity = {} if member in used else self.cost(member)
             if carried and member not in used:
                 extra = (
@@ -347,27 +350,27 @@ class Check:
                 )
         return total, reduced_cost
 
-    def _round_up(self, amount: Amount, stated: Any) -> Amount:
+    def _round_up(self, amount: Amount, stated_divisors: Any) -> Amount:
         """Return a bound, rounded up to a stated common divisor of all costs by an objective.
 
-        ``stated`` is an object with divisors by objective. The bound is rounded at the first objective whose
-        part is no multiple of its divisor. The parts after this objective become 0, since no cost is below 0.
-        A divisor that does not divide all costs is refused.
+        ``stated_divisors`` is an object with divisors by objective. The bound is rounded at the first
+        objective whose part is no multiple of its divisor. The parts after this objective become 0, since no
+        cost is below 0. A divisor that does not divide all costs is refused.
         """
-        multiples = {name: read_rational(multiple) for name, multiple in read_object(stated).items()}
-        require(multiples.keys() <= set(self.objectives), "a multiple is stated for another objective")
+        divisors = {name: read_rational(divisor) for name, divisor in read_object(stated_divisors).items()}
+        require(divisors.keys() <= set(self.objectives), "a multiple is stated for another objective")
         for level, objective in enumerate(self.objectives):
-            if objective in multiples:
-                multiple = multiples[objective]
-                require(multiple > 0, "a multiple is not above zero")
+            if objective in divisors:
+                divisor = divisors[objective]
+                require(divisor > 0, "a multiple is not above zero")
                 require(
-                    self.unit_costs.are_multiples(level, multiple),
+                    self.unit_costs.are_multiples(level, divisor),
                     "a cost is not a multiple of what is stated",
                 )
-                times = amount.get((level, None), Fraction(0)) / multiple
-                if times.denominator > 1:
-                    before = {key: value for key, value in amount.items() if key[0] < level}
-                    return {**before, (level, None): math.ceil(times) * multiple}
+                quotient = amount.get((level, None), Fraction(0)) / divisor
+                if quotient.denominator > 1:
+                    kept_parts = {key: value for key, value in amount.items() if key[0] < level}
+                    return {**kept_parts, (level, None): math.ceil(quotient) * divisor}
         return amount
 
     def _crossing_members(self, number: Any, used: frozenset[int], without: frozenset[int]) -> frozenset[int]:
@@ -379,44 +382,48 @@ class Check:
         self.budget.spend(1 + len(self.goals) + len(used) + len(self.members[index]))
         self.used_cuts.add(index)
         cut = self.cuts[index]
-        before = (
+        separates_wanted = (
             any(goal in cut and goal not in self.kitchen for goal in self.goals)
             or not cut.isdisjoint(self.ruled.goals)
             or any(not cut.isdisjoint(self.preconditions(member)) for member in used)
         )
-        require(before, f"cut {number} holds neither a goal nor what a used unit needs")
+        require(separates_wanted, f"cut {number} holds neither a goal nor what a used unit needs")
         return self.members[index] - without
 
     def _landmark(self, cut: frozenset[int]) -> Iterator[int]:
-        """Yield the members of a cut.
+        """Yield the members of a cut, given as a set of nodes; a member may be yielded twice.
 
         They are the units and steps that make one of its nodes and need none, and its kitchen items. Refuse a
         cut with a kitchen item unless the objective ``kitchen`` counts items.
         """
-        network, own = self.network, self.ruled.makers
-        self.budget.spend(sum(1 + len(own[o] if o in own else network.producers[o]) for o in cut))
+        network, makers_by_rules = self.network, self.ruled.makers
+        self.budget.spend(
+            sum(1 + len(makers_by_rules[o] if o in makers_by_rules else network.producers[o]) for o in cut)
+        )
         for o in cut:
             if o in self.kitchen:
                 require("kitchen" in self.objectives, "a cut holds a kitchen item")
                 yield len(network) + o
-            elif o in own:
-                yield from (member for member in own[o] if cut.isdisjoint(self.preconditions(member)))
+            elif o in makers_by_rules:
+                yield from (
+                    member for member in makers_by_rules[o] if cut.isdisjoint(self.preconditions(member))
+                )
             else:
                 for unit in network.producers[o]:
                     if o in self.gives(unit) and cut.isdisjoint(self.preconditions(unit)):
                         yield unit
 
     def _preconditions(self, member: int) -> frozenset[int | None]:
-        """Return the preconditions of a unit or a step, with nodes that constraints add; none for an item."""
+        """Return the preconditions of a member, with nodes that constraints add; a kitchen item has none."""
         if member in self.ruled.steps:
             return frozenset(self.ruled.steps[member][0])
         if member >= len(self.network):
             return frozenset()
-        own = self.ruled.needs.get(member)
-        return self.needs(member).union(own) if own else self.needs(member)
+        needs_by_rules = self.ruled.needs.get(member)
+        return self.needs(member).union(needs_by_rules) if needs_by_rules else self.needs(member)
 
     def _rule_meaning(self, rule: Rule, question: Question) -> Meaning:
-        """Return the meaning of a rule for the network; the work counts as steps of the check."""
+        """Return the meaning of a rule; count its work, and add the size of its claims to ``claim_size``."""
         self.budget.spend(ALLOWED.rule_steps * (len(self.network) + len(self.network.objects)))
         self.claim_size += sum(1 + len(used) + len(without) for used, without in rule.get("claims", ()))
         return meaning_of_rule(rule, question)
@@ -436,48 +443,49 @@ class Check:
         A kitchen item has the key ``item`` and its id as node; a step of constraints has ``step`` and its
         number from 0.
         """
-        network, kinds = self.network, [*read_object(choice)]
-        kind = kinds[0] if kinds in (["item"], ["step"]) else "unit"
-        number = read_object(choice, (kind,))[kind]
-        if kind == "unit":
+        network, keys = self.network, [*read_object(choice)]
+        key = keys[0] if keys in (["item"], ["step"]) else "unit"
+        number = read_object(choice, (key,))[key]
+        if key == "unit":
             return read_number(number, range(len(network)), "the id of a unit")
-        if kind == "item":
+        if key == "item":
             require("kitchen" in self.objectives, "a branch on an item where items cost nothing")
             return len(network) + read_number(number, self.kitchen, "the id of a kitchen item")
         steps = range(len(self.ruled.steps))
-        first = len(network) + len(network.objects)
-        return first + read_number(number, steps, "the number of a step")
+        first_step = len(network) + len(network.objects)
+        return first_step + read_number(number, steps, "the number of a step")
 
     def read_weights(
-        self, key: str, stated: Any, read: Callable[[Any], Amount], numbers: int = 1
+        self, key: str, stated: Any, read: Callable[[Any], Amount], name_length: int = 1
     ) -> Iterator[tuple[list[int], Amount]]:
         """Yield the weighted conditions under a key of a proof; refuse weights that are not above 0.
 
-        A row names its condition by its first ``numbers`` entries, which are yielded as a list, and has the
-        weight last. ``read`` turns the stated weight into an amount.
+        A row names its condition by its first ``name_length`` entries, which are yielded as a list, and has
+        the weight last. ``read`` turns the stated weight into an amount.
         """
-        for name, value in self.read_rows(key, stated, numbers):
+        for name, value in self.read_rows(key, stated, name_length):
             weight = read(value)
             require(self.arithmetic.sign(weight) > 0, f"{key}: a weight is not above zero")
             yield name, weight
 
-    def read_rows(self, key: str, stated: Any, numbers: int = 1) -> Iterator[tuple[list[int], Any]]:
-        """Yield rows under a key: their first ``numbers`` entries as a list, and the last entry.
+    def read_rows(self, key: str, stated: Any, name_length: int = 1) -> Iterator[tuple[list[int], Any]]:
+        """Yield rows under a key: their first ``name_length`` entries as a list, and the last entry.
 
-        The first entries have to be whole numbers, and to ascend from row to row.
+        Refuse rows of another length, and first entries that are no whole numbers or do not ascend from row
+        to row. ``key`` names the rows in errors.
         """
         rows = [read_list(row) for row in read_list(stated)]
-        names = [row[:numbers] for row in rows]
+        names = [row[:name_length] for row in rows]
         require(
-            all(len(row) == numbers + 1 for row in rows)
+            all(len(row) == name_length + 1 for row in rows)
             and all(type(number) is int for name in names for number in name),
             f"{key}: expected what has a weight by its number, and the weight",
         )
         in_order = names == sorted(map(list, {*map(tuple, names)}))
         require(in_order, f"{key}: expected weights in order, each once")
-        yield from ((name, row[numbers]) for name, row in zip(names, rows, strict=True))
+        yield from ((name, row[name_length]) for name, row in zip(names, rows, strict=True))
 
     def limit_at(self, number: int) -> Limit:
-        """Return the limit with a number; refuse a number that is of no limit."""
+        """Return the limit with this number (:class:`CompiledRules`); refuse a number without a limit."""
         require(number in self.ruled.limits, "a rule that limits nothing is given a weight")
         return self.ruled.limits[number]

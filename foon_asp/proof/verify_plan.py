@@ -149,7 +149,8 @@ class PlanCheck(Check):
     def _is_lacking(self, o: int, copies: int) -> bool:
         """Return whether initial copies of a node are fewer than ``copies``.
 
-        With the objective ``kitchen``, return ``True``, since initial copies are members of cuts.
+        With the objective ``kitchen``, return ``True`` in all cases, since initial copies are members of
+        cuts.
         """
         if "kitchen" in self.objectives:
             return True
@@ -167,8 +168,8 @@ class PlanCheck(Check):
         initial. Refuse it, too, if some unit adds such a node, needs none of them and is not removed.
         """
         network = self.network
-        stated = self.certificate["unreached"]
-        unreached = frozenset(read_numbers(stated, len(network.objects), ascending=stated != []))
+        stated_ids = self.certificate["unreached"]
+        unreached = frozenset(read_numbers(stated_ids, len(network.objects), ascending=stated_ids != []))
         removed = self.ruled.removed
         for o in unreached:
             self.budget.spend(1 + len(network.producers[o]))
@@ -176,31 +177,35 @@ class PlanCheck(Check):
             for unit in network.producers[o]:
                 reaches = o in self.flow(unit).adds and unreached.isdisjoint(self.flow(unit).asks)
                 require(unit in removed or not reaches, "what a unit can add is called unreached")
-        asking = {unit for o in unreached for unit in network.consumers[o] if o in self.flow(unit).asks}
-        return removed | asking
+        needing_units = {
+            unit for o in unreached for unit in network.consumers[o] if o in self.flow(unit).asks
+        }
+        return removed | needing_units
 
     def _is_initial(self, o: int) -> bool:
         """Return whether a node is endless or has copies in the stock."""
         return o in self.endless or self.stock.get(o, 0) > 0
 
     def _landmark(self, cut: frozenset[int]) -> Iterator[int]:
-        """Yield the members of a cut.
+        """Yield the members of a cut, given as a set of nodes; a member may be yielded twice.
 
         They are the units that add one of its nodes and need none, except units that no plan executes. The
         cut may have nodes that rules add. If the objective ``kitchen`` counts items, initial nodes of the cut
         are members, too. Otherwise, a cut with an endless node is refused.
         """
-        network, own = self.network, self.ruled.makers
-        self.budget.spend(sum(1 + len(own[o] if o in own else network.producers[o]) for o in cut))
+        network, makers_by_rules = self.network, self.ruled.makers
+        self.budget.spend(
+            sum(1 + len(makers_by_rules[o] if o in makers_by_rules else network.producers[o]) for o in cut)
+        )
         units: list[int] = []
         for o in cut:
-            if o in own:
-                units += own[o]
+            if o in makers_by_rules:
+                units += makers_by_rules[o]
                 continue
             if self._is_initial(o):
-                counted = "kitchen" in self.objectives
-                require(counted or o not in self.endless, "a cut holds a kitchen item")
-                yield from [len(network) + o] * counted
+                items_count = "kitchen" in self.objectives
+                require(items_count or o not in self.endless, "a cut holds a kitchen item")
+                yield from [len(network) + o] * items_count
             if o not in self.endless:
                 units += (unit for unit in network.producers[o] if o in self.flow(unit).adds)
         yield from (u for u in units if u not in self.idle and cut.isdisjoint(self.unmet_preconditions(u)))
@@ -210,7 +215,8 @@ class PlanCheck(Check):
     def balance(self, o: int) -> tuple[dict[int, int], int]:
         """Return the net effect of each unit on the copies of a node, and the copies wanted in the end.
 
-        Units without effect on the node are omitted.
+        The copies wanted are 0 unless the node is a goal. Units without effect on the node are omitted.
+        Refuse an endless node.
         """
         network = self.network
         read_number(o, range(len(network.objects)), "the id of a node in a balance")
@@ -226,33 +232,37 @@ class PlanCheck(Check):
         """Return the rounded sums of the certificate as rows.
 
         Each is a sum of balances, limits and earlier rounded sums, with weights above 0, which is then
-        rounded.
+        rounded (:func:`_round_row`).
         """
         rows: list[Row] = []
-        for stated in read_list(self.certificate["rounded"]):
+        for stated_sum in read_list(self.certificate["rounded"]):
             require(
-                set(read_object(stated)) <= {"balance", "limits", "rounded"}, "expected sums of conditions"
+                set(read_object(stated_sum)) <= {"balance", "limits", "rounded"},
+                "expected sums of conditions",
             )
             coefficients, least = dict[int, Fraction](), Fraction(0)
-            for key, weights in stated.items():
+            for key, weights in stated_sum.items():
                 for (number,), text in self.read_rows(key, weights):
                     weight = read_rational(text)
                     require(weight > 0, "what is rounded has a weight that is not above zero")
-                    row, wanted = self._condition_on_counts(key, number, rows)
-                    least += weight * wanted
+                    row, row_least = self._condition_on_counts(key, number, rows)
+                    least += weight * row_least
                     for unit, n in row.items():
                         coefficients[unit] = coefficients.get(unit, Fraction(0)) + weight * n
                         self.budget.spend_on_fractions(bit_length(coefficients[unit]))
             rows.append(_round_row(coefficients, least))
         return rows
 
-    def _condition_on_counts(self, key: str, number: int, earlier: Sequence[Row]) -> Row:
+    def _condition_on_counts(self, key: str, number: int, earlier_rows: Sequence[Row]) -> Row:
         """Return the condition of a certificate that ``key`` and ``number`` name, as a row.
 
-        ``key`` is ``balance``, ``limits`` or ``rounded``. ``earlier`` has the rounded sums before this one.
+        ``key`` is ``balance``, ``limits`` or ``rounded``. ``earlier_rows`` has the rounded sums before this
+        one.
         """
         if key == "rounded":
-            return earlier[read_number(number, range(len(earlier)), "the number of an earlier rounded sum")]
+            return earlier_rows[
+                read_number(number, range(len(earlier_rows)), "the number of an earlier rounded sum")
+            ]
         if key == "limits":
             limit = self.limit_at(number)
             return {unit: -amount for unit, amount in limit.amounts.items()}, -limit.max_sum
@@ -268,9 +278,9 @@ class PlanCheck(Check):
         """
         network = self.network
         copies, items_taken = Counter(self.stock), set[int]()
-        least: Counter[int] = Counter()  # initial copies that the plan needs
-        for step, stated in enumerate(units):
-            unit = read_number(stated, range(len(network)), "ids of units in a plan")
+        initial_needed: Counter[int] = Counter()  # initial copies that the plan needs
+        for step, stated_unit in enumerate(units):
+            unit = read_number(stated_unit, range(len(network)), "ids of units in a plan")
             asks, uses, adds = self.flow(unit)
             self.budget.spend(1 + len(asks) + len(adds))
             require(
@@ -279,30 +289,34 @@ class PlanCheck(Check):
             )
             items_taken |= self.endless & asks.keys()
             for o in asks.keys() & self.stock.keys():
-                least[o] = max(least[o], asks[o] + self.stock[o] - copies[o])
+                initial_needed[o] = max(initial_needed[o], asks[o] + self.stock[o] - copies[o])
             copies.subtract({o: n for o, n in uses.items() if o not in self.endless})
             copies.update({o: n for o, n in adds.items() if o not in self.endless})
         for goal in set(self.goals) - self.endless:
-            wanted = self.copies_wanted(goal)
-            require(copies[goal] >= wanted, "a copy of a goal is not there in the end")
+            wanted_copies = self.copies_wanted(goal)
+            require(copies[goal] >= wanted_copies, "a copy of a goal is not there in the end")
             if goal in self.stock:
-                least[goal] = max(least[goal], wanted + self.stock[goal] - copies[goal])
+                needed = wanted_copies + self.stock[goal] - copies[goal]
+                initial_needed[goal] = max(initial_needed[goal], needed)
         self._require_kept_rules_by_counts(Counter(units))
-        first = len(network)
+        item_offset = len(network)
         members = [
             *units,
-            *(first + o for o in sorted(items_taken)),
-            *(first + o for o in sorted(least.elements())),
+            *(item_offset + o for o in sorted(items_taken)),
+            *(item_offset + o for o in sorted(initial_needed.elements())),
         ]
         total = self.arithmetic.sum(map(self._cost, members))
         return total, self.unit_costs.written_costs(units, total)
 
     def _require_kept_rules_by_counts(self, counts: Counter[int]) -> None:
-        """Refuse a plan with these counts of units if it breaks a rule; limits count each execution."""
+        """Refuse a plan that breaks a rule; ``counts`` says how often it executes each unit.
+
+        Limits count each execution.
+        """
         ruled, units = self.ruled, frozenset(counts)
         require(not units & ruled.removed, "the plan has a unit that a rule removes")
-        wanted = all(not units.isdisjoint(ruled.makers[goal]) for goal in ruled.goals)
-        require(wanted and not ruled.never, "the plan lacks what a rule asks for")
+        has_goals = all(not units.isdisjoint(ruled.makers[goal]) for goal in ruled.goals)
+        require(has_goals and not ruled.never, "the plan lacks what a rule asks for")
         for limit in ruled.limits.values():
             total = sum((limit.amounts.get(unit, 0) * n for unit, n in counts.items()), Fraction(0))
             require(total <= limit.max_sum, "the plan exceeds what a rule limits")
@@ -334,7 +348,10 @@ class PlanCheck(Check):
                     self._check_leaf(node, level)
 
     def _children(self, node: Node) -> Iterator[Node]:
-        """Yield the two children of a node: counts of a member up to a number, and counts above it."""
+        """Yield the two children of a node, a branch.
+
+        In the first, the count of a member is at most a number; in the second, it is above this number.
+        """
         proof = read_object(node.proof, ("branch", "most", "up_to", "above"))
         member = self._read_branch_member(proof["branch"])
         max_count = read_number(proof["most"], COUNTS, "the most executions of a branch")
@@ -346,7 +363,7 @@ class PlanCheck(Check):
     def _check_leaf(self, node: Node, level: int) -> None:
         """Check that the Farkas combination of a leaf proves the bound for the counts of this node.
 
-        Nothing has to be proved if the node leaves no count for a member.
+        The leaf is accepted without a bound if the node leaves a member no possible count.
         """
         require(set(node.proof) <= _LEAF, "expected weights of conditions or a branch")
         conditions = _FarkasCombination(self, level, node.proof)
@@ -363,9 +380,9 @@ class PlanCheck(Check):
     ) -> Amount | None:
         """Return the least reduced cost of a member over all its possible counts at a node.
 
-        ``None`` if no count is possible. ``level`` is the index of the objective. From 1 on, the cost is
-        linear in the count, so it is enough to compare 0 and the ends of the range from 1 on. Refuse costs
-        that fall without end.
+        Return ``None`` if no count is possible. ``level`` is the index of the objective. For counts from 1
+        on, the cost is linear in the count. So it is enough to compare the count 0 and the ends of the range
+        from 1 on. Refuse costs that fall without end.
         """
         arithmetic = self.arithmetic
         low, high = node.min_counts.get(member, 0), self._max_count(member, level, node)
@@ -378,8 +395,8 @@ class PlanCheck(Check):
             [
                 per_execution,
                 *(
-                    arithmetic.times(w, self.cost_lower_bound(member, earlier))
-                    for earlier, w in conditions.levels
+                    arithmetic.times(w, self.cost_lower_bound(member, earlier_level))
+                    for earlier_level, w in conditions.levels
                 ),
             ]
         )
@@ -399,7 +416,8 @@ class PlanCheck(Check):
     def _max_count(self, member: int, level: int, node: Node) -> int | None:
         """Return an upper bound on the count of a member at a node; ``None`` if there is none.
 
-        Bounds come from branches, the stock, limits, and the claimed cost by this and earlier objectives.
+        Bounds come from branches, the stock, limits, and the claimed cost by this and earlier objectives. For
+        a unit that no plan executes (``idle``), the bound is 0.
         """
         bounds = [node.max_counts[member]] if member in node.max_counts else []
         if member >= len(self.network):
@@ -429,13 +447,14 @@ class PlanCheck(Check):
     def _max_count_by_cost(self, unit: int, level: int, less: bool) -> int | None:
         """Return an upper bound on the count of a unit in plans of at most the claimed cost by an objective.
 
-        With ``less``, the bound is for plans that cost less. ``None`` if an execution costs nothing.
+        With ``less``, the bound is for plans of less than the claimed cost; by ``success``, it is as without.
+        Return ``None`` if an execution costs nothing.
         """
         per_execution, max_cost = self.cost_lower_bound(unit, level), self.claimed_cost(level)
         if per_execution == 0:
             return None
-        exact = less and self.objectives[level] != "success"
-        return math.ceil(max_cost / per_execution) - 1 if exact else math.floor(max_cost / per_execution)
+        is_strict = less and self.objectives[level] != "success"
+        return math.ceil(max_cost / per_execution) - 1 if is_strict else math.floor(max_cost / per_execution)
 
     def amount_by_objective(self, member: int, level: int) -> Amount:
         """Return the cost of a member by the objective with the index ``level``, as an amount."""
@@ -444,7 +463,8 @@ class PlanCheck(Check):
     def cost_lower_bound(self, member: int, level: int) -> Fraction:
         """Return a lower bound on the cost of a member by an objective, as one number.
 
-        It is the exact cost, except by ``success``: there, ``-log`` of the rate is rounded down.
+        It is the exact cost, except by ``success``: there, ``-log`` of the rate is rounded down to a multiple
+        of ``1 / LOGARITHM_SCALE``, and a rate of 0 is refused. An item costs 0 by ``success``.
         """
         if self.objectives[level] != "success":
             return self.amount_by_objective(member, level).get((level, None), Fraction(0))
@@ -459,28 +479,34 @@ class PlanCheck(Check):
     def claimed_cost(self, level: int) -> Fraction:
         """Return the claimed least cost of plans by an objective, as one number.
 
-        By ``success``, it is ``-log`` of the product, rounded up.
+        By ``success``, it is ``-log`` of the product, rounded up to a multiple of ``1 / LOGARITHM_SCALE``.
         """
         assert self.least is not None
-        stated = {rate: value for (index, rate), value in self.least.items() if index == level}
+        parts_of_claim = {rate: value for (index, rate), value in self.least.items() if index == level}
         if self.objectives[level] != "success":
-            return stated.get(None, Fraction(0))
+            return parts_of_claim.get(None, Fraction(0))
         bounds = (
-            [e * bound for bound in self.arithmetic.minus_log(rate)] for rate, e in stated.items() if rate
+            [e * bound for bound in self.arithmetic.minus_log(rate)]
+            for rate, e in parts_of_claim.items()
+            if rate
         )
         return Fraction(math.ceil(LOGARITHM_SCALE * sum(map(max, bounds), Fraction(0))), LOGARITHM_SCALE)
 
     def cut_nodes(self, number: int) -> frozenset[int]:
-        """Return the nodes of the cut with a number."""
+        """Return the nodes of the cut with this number; refuse a number that no cut has."""
         return self.cuts[read_number(number, range(len(self.cuts)), "the number of a cut")]
 
     def holds_goal(self, nodes: frozenset[int]) -> bool:
-        """Return whether a cut has a goal of a rule, or a goal that initial copies do not satisfy."""
-        wanted = any(
+        """Return whether a cut, a set of nodes, has a goal of a rule or a goal that needs more copies.
+
+        A goal needs more copies if initial copies do not satisfy it. With the objective ``kitchen``, every
+        goal does that is not endless.
+        """
+        has_goal = any(
             goal in nodes and goal not in self.endless and self._is_lacking(goal, self.copies_wanted(goal))
             for goal in self.goals
         )
-        return wanted or not nodes.isdisjoint(self.ruled.goals)
+        return has_goal or not nodes.isdisjoint(self.ruled.goals)
 
     def read_weight(self, stated: Any, level: int) -> Amount:
         """Return a stated weight for one objective as an amount.
@@ -494,7 +520,8 @@ class PlanCheck(Check):
     def _require_enough(self, bound: Amount, level: int) -> None:
         """Refuse a bound that is below the claimed cost by an objective.
 
-        The bound is first rounded up to the next cost that a plan can have.
+        The bound is first rounded up to a multiple of ``1 / cost_denominator``, if this is not ``None``. If
+        the claim is that no plan exists, refuse a bound that is not above 0.
         """
         if self.least is None:
             enough = self.arithmetic.sign(bound) > 0
@@ -508,17 +535,21 @@ class PlanCheck(Check):
         require(enough, "the weights do not add up to enough")
 
     def _cost_denominator(self, level: int) -> int | None:
-        """Return the common denominator of unit costs by an objective; ``None`` by success or measures."""
+        """Return the least common denominator of the costs of units by an objective.
+
+        Return ``None`` if the objective is ``success``, ``dissimilarity`` or a measure: bounds by these are
+        not rounded.
+        """
         objective = self.objectives[level]
-        if objective == "success" or objective in self.unit_costs.measures:
+        if objective in {"success", "dissimilarity"} or objective in self.unit_costs.measures:
             return None
         if objective == "price":
-            unit_costs = self.unit_costs.prices
+            costs = self.unit_costs.prices
         elif objective == "attempts":
-            unit_costs = [1 / self.unit_costs.rate(unit) for unit in range(len(self.network))]
+            costs = [1 / self.unit_costs.rate(unit) for unit in range(len(self.network))]
         else:
-            unit_costs = []
-        return math.lcm(*(cost.denominator for cost in unit_costs))
+            costs = []
+        return math.lcm(*(cost.denominator for cost in costs))
 
 
 class _FarkasCombination:
@@ -533,7 +564,10 @@ class _FarkasCombination:
     """
 
     def __init__(self, check: PlanCheck, level: int, proof: Mapping[str, Any]) -> None:
-        """Read the weighted conditions of a proof for the objective with the index ``level``; add them up."""
+        """Read the weighted conditions of a proof for the objective with the index ``level``; add them up.
+
+        The cuts among them count as used by the proof.
+        """
         self.check, self.level, self.proof = check, level, proof
         self.constant: Amount = {}
         self.executed: dict[int, Amount] = {}
@@ -569,19 +603,19 @@ class _FarkasCombination:
             self._add_to_constant(weight, -check.claimed_cost(number))
             self.levels.append((number, weight))
 
-    def _weighted_rows(self, key: str, numbers: int = 1) -> Iterator[tuple[list[int], Amount]]:
+    def _weighted_rows(self, key: str, name_length: int = 1) -> Iterator[tuple[list[int], Amount]]:
         """Yield the weighted conditions under a key: the numbers that name each, and its weight.
 
-        ``numbers`` says how many numbers name a condition.
+        ``name_length`` is how many numbers name a condition.
         """
         read = partial(self.check.read_weight, level=self.level)
-        return self.check.read_weights(key, self.proof.get(key, []), read, numbers)
+        return self.check.read_weights(key, self.proof.get(key, []), read, name_length)
 
     def _add_cut(self, cut: int, weight: Amount, holds: bool) -> None:
         """Add the condition of a cut: a member is executed, or a copy of an item in it is taken.
 
-        Refuse the cut unless ``holds`` is true: it has a goal, or a precondition of the unit that it is
-        before.
+        ``holds`` says whether the cut has a goal, or a precondition of the unit that it is before. If not,
+        the cut is refused.
         """
         check = self.check
         require(holds, f"cut {cut} holds neither a goal nor what the unit asks for")
@@ -602,6 +636,7 @@ class _FarkasCombination:
         """Add the condition that the unit ``supplied`` gets the copies of a node that it needs.
 
         These copies are initial or added by other units, since the unit adds none before its first execution.
+        Refuse an endless node.
         """
         check, network = self.check, self.check.network
         read_number(o, range(len(network.objects)), "the id of a node in a supply")
@@ -613,10 +648,10 @@ class _FarkasCombination:
                 self._add_coefficient(self.executed, unit, weight, -added)
 
     def _initial_copies(self, o: int, weight: Amount) -> int:
-        """Return the initial copies of a node, to be used as a constant.
+        """Return the number of initial copies of a node, to be used as a constant.
 
-        With the objective ``kitchen``, taking them has a cost. Then add the item as a member instead, and
-        return 0.
+        With the objective ``kitchen``, taking copies has a cost. The item is then added as a member with this
+        weight, and 0 is returned.
         """
         check = self.check
         initial = check.stock.get(o, 0)
@@ -642,10 +677,10 @@ class _FarkasCombination:
 
 
 def _round_row(coefficients: Mapping[int, Fraction], least: Fraction) -> Row:
-    """Return a row that whole counts from 0 satisfy if they satisfy the given one (mixed-integer rounding).
+    """Return a row that follows from the given one for whole counts from 0 (mixed-integer rounding).
 
-    The given row is its coefficients by unit, and ``least``, a lower bound on the sum. It has to be no whole
-    number.
+    The given row has coefficients by unit, and the lower bound ``least`` on the weighted sum. A whole
+    ``least`` is refused.
     """
     fraction = least - math.floor(least)
     require(fraction > 0, "a sum is rounded that is whole")

@@ -22,8 +22,8 @@ def with_stand_ins(problem: Problem, table: StandInTable, everything: bool = Fal
 
     A stand-in uses one node in place of another that cannot be made from the kitchen. With ``everything``,
     each such pair of nodes with a price in the table has a stand-in. Otherwise, only those are added that a
-    tree of least dissimilarity can have (proof in docs/stand-ins.md). Stand-ins have the rate 1 and, as
-    units, the price 0.
+    tree of least dissimilarity can have (proof in docs/stand-ins.md). If the problem has success rates, that
+    of stand-ins is 1; if units have prices, that of stand-ins is 0.
 
     Raises:
         UserError: below level 3, if items are used up, or if a unit has the motion of stand-ins.
@@ -37,8 +37,8 @@ def with_stand_ins(problem: Problem, table: StandInTable, everything: bool = Fal
         raise UserError(f"a unit has the motion {STAND_IN!r}, which is that of stand-ins: rename it")
     prices, available = NodePrices(network, table), reach(problem).available
     if everything:
-        lacking = (o for o in range(len(network.objects)) if not available[o])
-        pairs = [(served, serving) for served in lacking for serving in prices.servers_of(served)]
+        unavailable_nodes = (o for o in range(len(network.objects)) if not available[o])
+        pairs = [(served, serving) for served in unavailable_nodes for serving in prices.servers_of(served)]
     else:
         pairs = _NearestStandIns(problem, prices, available).pairs()
     unit_prices = problem.unit_prices
@@ -54,9 +54,10 @@ def with_stand_ins(problem: Problem, table: StandInTable, everything: bool = Fal
 
 
 def _append_stand_ins(network: Network, pairs: Sequence[Pair]) -> Network:
-    """Return a network with a new unit for each pair of a served and a serving node.
+    """Return a copy of a network with a new unit for each pair of a served and a serving node.
 
-    The unit makes the served node of the serving one.
+    The unit makes the served node of the serving one. Its id is the position of the pair plus the number of
+    units of ``network``.
     """
     keys = {
         (STAND_IN, frozenset((serving,)), frozenset((served,))): unit
@@ -86,7 +87,7 @@ class _NearestStandIns:
         self._servers: dict[int, dict[int, int]] = {}
 
     def pairs(self) -> list[Pair]:
-        """Return the pairs of a served and a serving node of these stand-ins.
+        """Return the pairs of a served and a serving node, by id, of these stand-ins.
 
         If no tree exists, the pairs are enough to prove that.
         """
@@ -105,7 +106,7 @@ class _NearestStandIns:
         return [(served, serving) for served in needed for serving in self._servers[served]]
 
     def _servers_of(self, served: int) -> dict[int, int]:
-        """Return the nodes that may serve for a node, by id with their prices; cached.
+        """Return the price of each node, by id, that may serve in place of the node ``served``; cached.
 
         Nodes that cost more than the cheapest available one are omitted.
         """
@@ -118,37 +119,37 @@ class _NearestStandIns:
         return servers
 
     def _unavailable_preconditions(self, served: int) -> Iterator[tuple[int, ...]]:
-        """Yield for each achiever of a node its unavailable preconditions."""
+        """Yield for each achiever of the node ``served`` its preconditions that are not available."""
         problem, available = self._problem, self._available
         for unit in problem.makers[served]:
             yield tuple([o for o in problem.needs[unit] if not available[o]])
 
     def _needed_nodes(self, goals: Iterable[int]) -> set[int]:
-        """Return the unavailable nodes that a tree can need, goals included."""
+        """Return the nodes that are not available and that a tree can need, by id; ``goals`` are included."""
         needed = set(goals)
         stack = list(needed)
         while stack:
             served = stack.pop()
-            lacking = {o for o in self._servers_of(served) if not self._available[o]}
-            lacking.update(o for way in self._unavailable_preconditions(served) for o in way)
-            lacking -= needed
-            needed |= lacking
-            stack.extend(lacking)
+            newly_needed = {o for o in self._servers_of(served) if not self._available[o]}
+            newly_needed.update(o for nodes in self._unavailable_preconditions(served) for o in nodes)
+            newly_needed -= needed
+            needed |= newly_needed
+            stack.extend(newly_needed)
         return needed
 
     def _cheapest_steps(
-        self, needed: Iterable[int], combined: Callable[[Iterable[int]], int]
+        self, needed: Iterable[int], combine: Callable[[Iterable[int]], int]
     ) -> "dict[int, _Step]":
-        """Return the cheapest last step to each node that can be made; the others are omitted.
+        """Return the cheapest last step to each node of ``needed`` that can be made, by id.
 
-        A unit costs the ``combined`` costs of its inputs. With ``max``, the cost of a node is a lower bound
-        on the dissimilarity of making it (h_max; Bonet and Geffner 2001). With ``sum``, the steps lead to a
-        good tree (h_add). Computed by Knuth's generalization of Dijkstra's algorithm (Information Processing
-        Letters 6, 1977).
+        A unit costs the costs of its inputs, combined by ``combine``. With ``max``, the cost of a node is a
+        lower bound on the dissimilarity of making it (h_max; Bonet and Geffner 2001). With ``sum``, the steps
+        lead to a good tree (h_add). Computed by Knuth's generalization of Dijkstra's algorithm (Information
+        Processing Letters 6, 1977).
         """
         served_by: defaultdict[int, list[tuple[int, int]]] = defaultdict(list)
         consumers: defaultdict[int, list[int]] = defaultdict(list)
-        ways: list[tuple[int, tuple[int, ...]]] = []  # a made node and its unavailable inputs
+        achievers: list[tuple[int, tuple[int, ...]]] = []  # the made node and the unavailable preconditions
         heap: list[tuple[int, int, tuple[int, ...], int]] = []
         for served in needed:
             for serving, price in self._servers_of(served).items():
@@ -156,11 +157,11 @@ class _NearestStandIns:
                     heappush(heap, (price, served, (), price))
                 else:
                     served_by[serving].append((served, price))
-            for way in self._unavailable_preconditions(served):
-                for o in way:
-                    consumers[o].append(len(ways))
-                ways.append((served, way))
-        missing = [len(way) for _, way in ways]
+            for preconditions in self._unavailable_preconditions(served):
+                for o in preconditions:
+                    consumers[o].append(len(achievers))
+                achievers.append((served, preconditions))
+        missing = [len(preconditions) for _, preconditions in achievers]
         steps: dict[int, _Step] = {}
         while heap:
             cost, made, made_of, price = heappop(heap)
@@ -172,22 +173,22 @@ class _NearestStandIns:
             for number in consumers[made]:
                 missing[number] -= 1
                 if not missing[number]:
-                    served, way = ways[number]
-                    heappush(heap, (combined(steps[o].cost for o in way), served, way, 0))
+                    served, preconditions = achievers[number]
+                    heappush(heap, (combine(steps[o].cost for o in preconditions), served, preconditions, 0))
         return steps
 
     def _dissimilarity(self, goals: Iterable[int], steps: "Mapping[int, _Step]") -> int:
         """Return the dissimilarity of the tree that follows ``steps`` back from the goals.
 
-        Each stand-in counts once.
+        Each stand-in counts once. ``goals`` are nodes that are not available.
         """
-        total, met = 0, set(goals)
-        stack = list(met)
+        total, visited = 0, set(goals)
+        stack = list(visited)
         while stack:
             step = steps[stack.pop()]
             total += step.price
-            stack.extend(o for o in step.made_of if o not in met)
-            met.update(step.made_of)
+            stack.extend(o for o in step.made_of if o not in visited)
+            visited.update(step.made_of)
         return total
 
 
@@ -195,7 +196,7 @@ class _Step(NamedTuple):
     """The last step to a node: a unit or a stand-in.
 
     ``cost``: the cost of this step and of all steps before it.
-    ``made_of``: the unavailable nodes that the step needs.
+    ``made_of``: the nodes that the step needs and that are not available.
     ``price``: the price of a stand-in; 0 for a unit.
     """
 

@@ -1,4 +1,4 @@
-"""The next best stand-in: the node to use if the serving node of a tree's stand-in were not available."""
+"""The next best stand-in: the node to use if the serving node of a stand-in of a tree were not available."""
 
 from collections.abc import Collection
 from fractions import Fraction
@@ -13,8 +13,9 @@ class UsedStandIn(NamedTuple):
     """A stand-in of a tree, by ids: the serving node is used in place of the served one.
 
     ``unit``: the unit of the stand-in.
-    ``next_best``: the cheapest other node that may serve, with its dissimilarity. It is chosen among nodes of
-    the kitchen and nodes that the tree makes without this stand-in. ``None`` if none of them may serve.
+    ``next_best``: the cheapest other node that may serve, by id, with its dissimilarity. It is chosen among
+    nodes of the kitchen and nodes that the tree makes without this stand-in; the smaller id decides ties.
+    ``None`` if none of them may serve.
     """
 
     unit: int
@@ -33,7 +34,7 @@ def stand_ins_of(problem: Problem, tree: Collection[int]) -> list[UsedStandIn]:
     used: list[UsedStandIn] = []
     for unit in units:
         (serving,), (served,) = network.inputs[unit], network.outputs[unit]
-        available = _nodes_made(problem, [other for other in tree if other != unit])
+        available = _nodes_made(problem, [tree_unit for tree_unit in tree if tree_unit != unit])
         others = (
             (price, o) for o, price in prices.servers_of(served).items() if o in available and o != serving
         )
@@ -43,9 +44,9 @@ def stand_ins_of(problem: Problem, tree: Collection[int]) -> list[UsedStandIn]:
     return used
 
 
-def _nodes_made(problem: Problem, tree: Collection[int]) -> set[int]:
-    """Return the nodes of the kitchen and those that units of a tree make from it, as far as they execute."""
-    made, waiting = set(problem.kitchen), list(tree)
+def _nodes_made(problem: Problem, units: Collection[int]) -> set[int]:
+    """Return the nodes, by id, of the kitchen and those that units make from it, as far as they execute."""
+    made, waiting = set(problem.kitchen), list(units)
     while ready := [unit for unit in waiting if made.issuperset(problem.needs[unit])]:
         made.update(o for unit in ready for o in problem.gives[unit])
         waiting = [unit for unit in waiting if unit not in ready]

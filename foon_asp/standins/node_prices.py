@@ -1,4 +1,4 @@
-"""Fast prices of many stand-ins, in integers, without the edits that explain them."""
+"""Prices of many stand-ins, computed fast and in integers, without the edits that explain them."""
 
 import math
 from collections import Counter, defaultdict
@@ -36,18 +36,21 @@ class NodePrices:
         self._servers: dict[int, dict[int, int]] = {}
 
     def _scaled(self, price: Fraction | None) -> int | None:
-        """Return a price times ``scale``; ``None`` if it is ``None``."""
+        """Return a price times ``scale``; ``None`` for ``None``."""
         return None if price is None else int(price * self.scale)
 
     def servers_of(self, served: int) -> dict[int, int]:
-        """Return the price of each node that may stand in for a node of the network, by id; cached."""
+        """Return the price of each node, by id, that may stand in for a node of the network; cached.
+
+        ``served`` is the id of the latter.
+        """
         servers = self._servers.get(served)
         if servers is None:
             servers = self._servers[served] = self.servers_of_node(self._objects[served])
         return servers
 
     def servers_of_node(self, node: ObjectNode) -> dict[int, int]:
-        """Return the price of each node, by id, that may stand in for a node of any network."""
+        """Return the price of each node, by id, that may stand in for ``node``, a node of any network."""
         objects, by_label = self._objects, self._by_label
         labels = (
             *self._labels_by_spelling.get(spelling_key(node.label), ()),
@@ -61,7 +64,8 @@ class NodePrices:
     def price(self, serving: ObjectNode, served: ObjectNode) -> int | None:
         """Return the price of using ``serving`` in place of ``served``; ``None`` if the table forbids it.
 
-        A price of the pair of nodes takes precedence. Otherwise the prices of all differences are added up.
+        If the table lists this pair of nodes, its entry decides. Otherwise, the prices of all differences
+        between the nodes are added up. The price is a whole number, in units of ``1 / scale``.
         """
         if self._pairs and (serving, served) in self._pairs:
             return self._pairs[serving, served]
@@ -99,54 +103,62 @@ class NodePrices:
     def _name_price(self, edit: Edit, name: str) -> int | None:
         """Return the price of an edit that adds or removes a name; ``None`` if the table forbids it.
 
-        The name is a state or an ingredient. Its own price takes precedence over that of the edit.
+        The name is a state or an ingredient. If it has a price of its own for this edit, that is the price.
+        Otherwise, it is the price of the edit.
         """
         price = self._words.get((edit, name), -1)
         return self._edits[edit] if price == -1 else price
 
-    def _contents_price(self, ours: tuple[str, ...], theirs: tuple[str, ...]) -> int | None:
+    def _contents_price(
+        self, ingredients: tuple[str, ...], served_ingredients: tuple[str, ...]
+    ) -> int | None:
         """Return the price of the differences between two contents, given by their ingredients.
 
-        If the ingredients are equal, the contents differ in a word such as *in*. Contents with little in
-        common also cost the price of :attr:`Edit.CONTENTS`. ``None`` if the table forbids a difference.
+        If the ingredients are equal, the contents differ in a word such as *in*. If at most half of the
+        ingredients of the longer list are common, the price of :attr:`Edit.CONTENTS` is added. Return
+        ``None`` if the table forbids a difference.
         """
-        if ours == theirs:
+        if ingredients == served_ingredients:
             return self._edits[Edit.WORD]
         total = 0
-        larger = max(len(ours), len(theirs))
-        if 2 * min(len(ours), len(theirs)) <= larger:
+        larger = max(len(ingredients), len(served_ingredients))
+        if 2 * min(len(ingredients), len(served_ingredients)) <= larger:
             price = self._edits[Edit.CONTENTS]
             if price is None:
                 return None
             total = price
-        surplus, lacking = Counter(ours), Counter(theirs)
-        common = surplus & lacking
+        counts, served_counts = Counter(ingredients), Counter(served_ingredients)
+        common = counts & served_counts
         if not total and 2 * common.total() <= larger:
             price = self._edits[Edit.CONTENTS]
             if price is None:
                 return None
             total = price
-        for edit, items in (
-            (Edit.MORE_INGREDIENT, surplus - common),
-            (Edit.FEWER_INGREDIENT, lacking - common),
+        for edit, differing in (
+            (Edit.MORE_INGREDIENT, counts - common),
+            (Edit.FEWER_INGREDIENT, served_counts - common),
         ):
-            for name, count in items.items():
+            for name, count in differing.items():
                 price = self._name_price(edit, name)
                 if price is None:
                     return None
                 total += price * count
         return total
 
-    def _relations_price(self, ours: frozenset[Relation], theirs: frozenset[Relation]) -> int | None:
+    def _relations_price(
+        self, relations: frozenset[Relation], served_relations: frozenset[Relation]
+    ) -> int | None:
         """Return the price of the differences between two sets of relations.
 
-        ``None`` if the table forbids a difference.
+        A container of both sets with another word such as *on* costs the price of a word. Each other
+        container costs that of a container; a container in place of another counts once. Return ``None`` if
+        the table forbids a difference.
         """
-        surplus = Counter(relation.object for relation in ours - theirs)
-        lacking = Counter(relation.object for relation in theirs - ours)
-        same = (surplus & lacking).total()
-        moved = max(surplus.total(), lacking.total()) - same
+        surplus = Counter(relation.object for relation in relations - served_relations)
+        lacking = Counter(relation.object for relation in served_relations - relations)
+        word_changes = (surplus & lacking).total()
+        container_changes = max(surplus.total(), lacking.total()) - word_changes
         word, container = self._edits[Edit.WORD], self._edits[Edit.CONTAINER]
-        if (same and word is None) or (moved and container is None):
+        if (word_changes and word is None) or (container_changes and container is None):
             return None
-        return same * (word or 0) + moved * (container or 0)
+        return word_changes * (word or 0) + container_changes * (container or 0)

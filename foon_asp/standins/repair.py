@@ -20,9 +20,9 @@ from foon_asp.standins.extension import with_stand_ins
 class Repair:
     """The problem whose best tree is the cheapest repair of a tree.
 
-    ``posed``: the problem to solve. Each step of the tree has one additional output in it: a node that is a
-    goal and that only this step makes. So every solution has all steps.
-    ``shown``: the same problem without these nodes, with the same ids of units.
+    ``posed``: the problem to solve. In it, each step of the tree has one additional output, its *marker*: a
+    node that is a goal and that only this step makes. So every solution has all steps.
+    ``shown``: the problem ``posed`` without markers. Units have the ids that they have in ``posed``.
     ``steps``: the units of the tree, by id, in the order listed, each once.
     """
 
@@ -41,15 +41,17 @@ class Repair:
     ) -> "Repair":
         """Make the problem of a repair, over the units of a problem's network and of a tree.
 
-        ``sources`` has the source of each unit of the tree. Stand-ins in the network are omitted.
-        ``is_available`` says of a node that is not in the network whether the kitchen has it.
+        ``sources`` has the source of each unit of the tree, and ``table`` the prices of stand-ins. Stand-ins
+        in the network are omitted, and so are rates that differ from those of motions. ``is_available`` says
+        of a node that is not in the network of ``problem`` whether the kitchen has it. Goals that are in no
+        unit are dropped.
         """
         original = problem.network
         builder = NetworkBuilder()
-        for unit, places in zip(original, original.sources, strict=True):
+        for unit, unit_sources in zip(original, original.sources, strict=True):
             if unit.motion == STAND_IN:
                 continue
-            builder.add(unit.motion, unit.inputs, unit.outputs, *places)
+            builder.add(unit.motion, unit.inputs, unit.outputs, *unit_sources)
         unit_ids = [
             builder.add(unit.motion, unit.inputs, unit.outputs, source)
             for unit, source in zip(tree, sources, strict=True)
@@ -75,42 +77,43 @@ class Repair:
 
     @classmethod
     def over(cls, problem: Problem, steps: tuple[int, ...], table: StandInTable) -> "Repair":
-        """Make the problem of a repair for a tree whose units, ``steps``, are in the problem's network.
+        """Make the problem of a repair for a tree whose units are in the problem's network.
 
-        The network must have no stand-ins.
+        ``steps`` has these units, by id, each once. The network must have no stand-ins. Raises
+        :class:`UserError` as :func:`with_stand_ins` does.
         """
         network = problem.network
-        first = len(network.objects)
-        marked = replace(
+        first_marker = len(network.objects)
+        marked_problem = replace(
             problem,
             network=_with_markers(network, steps),
-            goals=(*problem.goals, *range(first, first + len(steps))),
+            goals=(*problem.goals, *range(first_marker, first_marker + len(steps))),
         )
-        posed = with_stand_ins(marked, table)
+        posed = with_stand_ins(marked_problem, table)
         shown = replace(posed, network=_without_markers(posed.network, network), goals=problem.goals)
         return cls(posed, shown, steps)
 
     def added_units(self, units: Sequence[int]) -> list[int]:
-        """Return the units of a repaired tree that are neither its own steps nor stand-ins, in order."""
+        """Return those of ``units``, a repaired tree, that are neither ``steps`` nor stand-ins, in order."""
         motions, steps = self.posed.network.motions, frozenset(self.steps)
         return [unit for unit in units if unit not in steps and motions[unit] != STAND_IN]
 
     def unmakeable_nodes(self) -> list[int]:
-        """Return the nodes that steps or goals need and that cannot be made, even with stand-ins, ascending.
+        """Return the goals and preconditions of steps that cannot be made, even with stand-ins, ascending.
 
-        Nodes that steps would make are omitted, unless there are no others.
+        They are ids. Nodes that steps would make are omitted, unless there are no others.
         """
         available = reach(self.posed).available
         made = {o for unit in self.steps for o in self.shown.gives[unit]}
         needed = {o for unit in self.steps for o in self.shown.needs[unit]}.union(self.shown.goals)
-        lacking = [o for o in sorted(needed) if not available[o]]
-        return [o for o in lacking if o not in made] or lacking
+        unmakeable = [o for o in sorted(needed) if not available[o]]
+        return [o for o in unmakeable if o not in made] or unmakeable
 
 
 def _with_markers(network: Network, steps: Sequence[int]) -> Network:
-    """Return a network in which each of the ``steps`` has one more output, which only this step makes."""
-    first = len(network.objects)
-    markers = {unit: o for o, unit in enumerate(steps, first)}
+    """Return a copy of a network in which each of ``steps`` has a marker as an additional output."""
+    first_marker = len(network.objects)
+    markers = {unit: o for o, unit in enumerate(steps, first_marker)}
     # labels in files have no line break, so these nodes have no stand-in
     nodes = [ObjectNode(f"step\n{number}", frozenset({"done"})) for number in range(1, len(steps) + 1)]
     outputs = tuple(
@@ -120,7 +123,7 @@ def _with_markers(network: Network, steps: Sequence[int]) -> Network:
         network,
         objects=(*network.objects, *nodes),
         outputs=outputs,
-        _object_ids={**network._object_ids, **{node: o for o, node in enumerate(nodes, first)}},
+        _object_ids={**network._object_ids, **{node: o for o, node in enumerate(nodes, first_marker)}},
         _unit_ids={
             (motion, frozenset(inputs), frozenset(made)): unit
             for unit, (motion, inputs, made) in enumerate(
@@ -131,9 +134,9 @@ def _with_markers(network: Network, steps: Sequence[int]) -> Network:
 
 
 def _without_markers(extended: Network, plain: Network) -> Network:
-    """Return an extended network without the nodes that :func:`_with_markers` added; stand-ins stay.
+    """Return a copy of a network without the nodes that :func:`_with_markers` added; stand-ins stay.
 
-    ``plain`` is the network before that.
+    ``plain`` is the network before markers and stand-ins were added.
     """
     stand_ins = {key: unit for key, unit in extended._unit_ids.items() if unit >= len(plain)}
     return replace(

@@ -24,9 +24,9 @@ def read_stand_ins(
 ) -> StandInTable:
     """Return the default table of prices, changed by files; a later file takes precedence.
 
-    The lexicons ``similar`` are read before all ``files``. Of lexicons, only pairs are read, and those with a
-    label of ``utensils`` are ignored. So a tool or vessel stands in only if one of the ``files`` lists it.
-    Raises :class:`InputError`.
+    The files ``similar``, lexicons, are read before all ``files``. Of lexicons, only pairs are read, and
+    those with a label in ``utensils`` are ignored. So a tool or vessel stands in only if one of the ``files``
+    lists it. Raises :class:`InputError` if a file is malformed.
     """
     table = StandInTable.usual()
     for file in similar:
@@ -38,7 +38,7 @@ def read_stand_ins(
 
 
 def _names_utensil(entry: Entry, utensils: Collection[str]) -> bool:
-    """Return whether one of the names of a pair is, or has as label, a label of ``utensils``."""
+    """Return whether a pair of labels or nodes has a label in ``utensils``."""
     labels = {name.label if isinstance(name, ObjectNode) else name for name in entry}
     return not labels.isdisjoint(utensils)
 
@@ -57,10 +57,11 @@ def _update_table(table: StandInTable, rows: Sequence[Row[Entry, Fraction | None
 
 
 def _read_row(name: str, value: str, column: int) -> tuple[Entry, Fraction | None]:
-    """Return the edit or pair of a row and its price; ``None`` for the word ``never``.
+    """Return the edit or pair of a row, and its price; the price is ``None`` for the word ``never``.
 
-    A pair has three columns: ``value`` then has the served name, a tab and the price. Raises
-    :class:`LineError` if the row is malformed.
+    ``name`` is the first column of the row, and ``value`` the others, from ``column`` on. A pair has three
+    columns: ``value`` then has the served name, a tab and the price. Raises :class:`LineError` if the row is
+    malformed.
     """
     served, tab, written = value.rpartition("\t")
     price = _read_price(written.strip(), column + len(value) - len(written))
@@ -75,19 +76,25 @@ def _read_row(name: str, value: str, column: int) -> tuple[Entry, Fraction | Non
 
 
 def _read_edit(name: str) -> Edit | tuple[Edit, str]:
-    """Return the edit that a name means, with its state or ingredient if the name has one after a colon.
+    """Return the edit of a name such as ``word`` or ``more state: dirty``; in the latter case, a pair.
 
-    Raises :class:`LineError` for other names.
+    The pair has the edit, and the state or ingredient after the colon. Raises :class:`LineError` for other
+    names.
     """
-    kind, colon, word = (text.strip() for text in name.partition(":"))
-    if kind not in (_NAMED if colon else _KINDS) or (colon and not word):
-        kinds = ", ".join(_KINDS)
-        raise LineError(1, repr(name), (f"two names and a price between tabs, or a kind of edit ({kinds})",))
-    return (Edit(kind), word) if colon else Edit(kind)
+    edit_name, colon, word = (text.strip() for text in name.partition(":"))
+    if edit_name not in (_NAMED if colon else _KINDS) or (colon and not word):
+        known_edits = ", ".join(_KINDS)
+        raise LineError(
+            1, repr(name), (f"two names and a price between tabs, or a kind of edit ({known_edits})",)
+        )
+    return (Edit(edit_name), word) if colon else Edit(edit_name)
 
 
 def _read_price(written: str, column: int) -> Fraction | None:
-    """Return a price above 0, ``None`` for ``never``; raises :class:`LineError` for other texts."""
+    """Return the price above 0 of a text, or ``None`` for ``never``; raise :class:`LineError` for others.
+
+    A price has at most six digits before the point and three after it. ``column`` is where the text begins.
+    """
     if written == _NEVER:
         return None
     price = Fraction(written) if _NUMBER.fullmatch(written) else Fraction(0)

@@ -243,7 +243,7 @@ def test_known_landmarks_are_taken_and_counts_are_capped() -> None:
     ways = flows(">0", ">0")
     for known, cap, least in (([], None, 1), ([Landmark((1,))], None, 3), ([], 0, 3)):
         prover = PlanProver(ways)
-        prover.require(known)
+        prover.add_known_landmarks(known)
         found = prover.prove_claim(claim_of([1, 3], 3, caps=[cap, None]), Measure([1, 3]), ())
         assert found is not None
         assert found[1] == (Fraction(least),)

@@ -85,7 +85,7 @@ def test_rows_and_columns_may_come_and_change_between_solutions() -> None:
     growing.change_row(1, {0: -2, 5: 9})  # a row keeps its columns
     assert growing.solve({0: 2, 1: 3}) == Solved([0.5, 2.5], Fraction(17, 2))
     assert growing.add_column(1, 4) == 2
-    assert growing.columns == 3
+    assert growing.column_count == 3
     assert growing.add_row({2: 1, 1: -1}, 0) == 2
     assert growing.solve({0: 2, 1: 3, 2: 1}) == Solved([0.5, 2.5, 2.5], Fraction(11))
     assert growing.solve({2: -1}).bound == -4

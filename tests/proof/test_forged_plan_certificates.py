@@ -11,12 +11,13 @@ from typing import Any
 
 import pytest
 
-from foon_asp.network import UnitAmounts, UnitPrices
+from foon_asp.network import Edit, StandInTable, UnitAmounts, UnitPrices
 from foon_asp.network.level import network_at_level
 from foon_asp.problem import ContainerRule, Problem
 from foon_asp.proof import certificate_items, unit_flows, verify_plan
 from foon_asp.proof.certificate_header import seal
 from foon_asp.proof.refusal import RefusedError
+from foon_asp.standins import with_stand_ins
 from tests.proof.by_hand import NO_TREE, bound, goals, recipe
 from tests.proof.forging import KIND, Forged, Part, checks, held, require_its_check_alone, require_right
 from tests.support.handmade_certificate import Content, forbid, handmade
@@ -56,6 +57,12 @@ STACKED = replace(STACKED, containers=ContainerRule.IMPLIED)
 NEVER = replace(PLAIN, rates={**(PLAIN.rates or {}), "bake": Fraction(0)})
 PRICES = {**dict.fromkeys(PLAIN.network.motions, Fraction(1, 2)), "bake": Fraction(1, 4)}
 PRICED = replace(PLAIN, unit_prices=UnitPrices(PRICES, {}))
+# Sliced soup may stand in for diced soup, for one half.
+HALVES = dict.fromkeys((Edit.MORE_STATE, Edit.FEWER_STATE), Fraction(1, 4))
+REPLACED = with_stand_ins(
+    recipe("sip: soup; sliced > tea", "serve: soup; diced > meal", kitchen="soup; sliced"),
+    StandInTable({**StandInTable.usual().edits, **HALVES}, {}, {}),
+)
 LEVEL = replace(PLAIN, network=network_at_level(PLAIN.network, 2))
 
 
@@ -381,8 +388,8 @@ PARTS = {
         at_least("1", {"balance": [[SALT, "1"]]}, **goals(PLAIN, SALT)),
     ),
     "what costs less than two is executed once, at most": Part(
-        "math.ceil(max_cost / per_execution) - 1 if exact",
-        "math.ceil(max_cost / per_execution) - 2 if exact",
+        "math.ceil(max_cost / per_execution) - 1 if is_strict",
+        "math.ceil(max_cost / per_execution) - 2 if is_strict",
         at_least("2", {"balance": [[DOUGH, "2"]]}, **goals(PLAIN, DOUGH)),
     ),
     "what never runs out can be taken": Part(
@@ -391,7 +398,7 @@ PARTS = {
         at_least("2", floured("2"), **FLOURED),
     ),
     "what is asked for is taken of the kitchen": Part(
-        "yield from [len(network) + o] * counted",
+        "yield from [len(network) + o] * items_count",
         "yield from ()",
         at_least("2", floured("2"), **FLOURED),
     ),
@@ -399,6 +406,19 @@ PARTS = {
         'elif objective == "attempts":',
         "elif objective == 0:",
         at_least("3", {"balance": [[DOUGH, "4/3"], [BREAD, "17/6"]]}, objective=["attempts"]),
+    ),
+    "a bound by dissimilarity is not rounded up": Part(
+        'objective in {"success", "dissimilarity"}',
+        'objective == "success"',
+        at_least(
+            "1",
+            {"weights": [[0, "1/2"]]},
+            objective=["dissimilarity"],
+            items=items(),
+            unreached=[],
+            cuts=[[2, 3]],
+            at=REPLACED,
+        ),
     ),
     "a bound is rounded up to what units are priced at": Part(
         'if objective == "price":',
@@ -421,7 +441,7 @@ PARTS = {
         plain(items=items([[SALT, 0]])),
     ),
     "a goal in stock is taken of it": Part(
-        "least[goal] = max(least[goal], wanted + self.stock[goal] - copies[goal])",
+        "initial_needed[goal] = max(initial_needed[goal], needed)",
         "pass",
         plain(objective=["kitchen"], **goals(PLAIN, SALT), tree=[], costs=[0], proof=[{}]),
     ),
