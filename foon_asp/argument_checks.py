@@ -45,11 +45,13 @@ def typed(function: Callable[P, T]) -> Callable[P, T]:
 def checker(
     function: Callable[..., object], signature: inspect.Signature | None = None
 ) -> Callable[[tuple[object, ...], Mapping[str, object]], None]:
-    """Return a function that checks arguments, positional and named, against the annotations of ``function``.
+    """Return a function that checks positional and named arguments against the annotations of ``function``.
 
     It raises :class:`UserError` for a value that its annotation does not allow. It raises ``TypeError`` for
-    arguments that do not fit the ``signature``, by default that of the function. Items of iterators are not
-    checked, since they can be read only once. Annotations that are strings allow all values.
+    arguments that do not fit the ``signature``, by default that of ``function``.
+
+    A value that one annotation cannot express is allowed: annotations that are strings allow all values, and
+    keys, values and items of mappings and iterators are not checked.
     """
     allowed = signature or inspect.signature(function)
     annotations = {name: parameter.annotation for name, parameter in allowed.parameters.items()}
@@ -74,6 +76,8 @@ def checker(
 def _is_allowed(kind: Any, value: object) -> bool:
     """Whether an annotation allows a value, as far as that can be checked at runtime.
 
+    Items are checked of lists, tuples and sets only. A text is not several values.
+    ``float`` allows integers, and neither ``float`` nor ``int`` allows ``True`` and ``False``.
     Annotations that are no types, such as strings, allow all values.
     """
     origin, arguments = typing.get_origin(kind), typing.get_args(kind)
@@ -94,7 +98,10 @@ def _is_allowed(kind: Any, value: object) -> bool:
 
 
 def _is_of_several_values(origin: Any) -> bool:
-    """Whether an annotation is of several values, by its origin; a mapping counts as one value."""
+    """Whether an annotation, given by its origin, is of several values, such as ``Sequence``.
+
+    A mapping counts as one value.
+    """
     return isinstance(origin, type) and issubclass(origin, Iterable) and not issubclass(origin, Mapping)
 
 

@@ -42,7 +42,7 @@ def _complete_goal(context: click.Context, prefix: str) -> Iterable[str]:
     """Return the entries of the goals file that begin with ``prefix``, then other nodes that do."""
     dataset = _read_dataset(context)
     names = dataset.names
-    listed = _words_with_prefix(entry_names(dataset.listed, names), prefix)
+    listed = _words_with_prefix(entry_names(dataset.goal_entries, names), prefix)
     return chain(listed, (str(names.node(o)) for o in nodes_beginning(prefix, names, MAX_COMPLETIONS)))
 
 

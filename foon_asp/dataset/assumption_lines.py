@@ -9,9 +9,10 @@ from foon_asp.text.assumed_goals import MARKED
 
 
 def kitchen_lines(dataset: Dataset, problems: Iterable[Problem], verbose: bool) -> Iterator[str]:
-    """Yield a line on the starting kitchen, with the number of its items that the problems can use.
+    """Yield a line on the assumed starting kitchen, with the number of its items that problems can use.
 
-    The line names up to six of the items that some unit makes. ``verbose`` adds a line for each item.
+    The line also names the first six of these items that some unit makes, and how many more there are. With
+    ``verbose``, a line for each of the items follows.
     """
     used = {
         problem.network.object_number(o): problem.network.objects[o]
@@ -33,9 +34,9 @@ def kitchen_lines(dataset: Dataset, problems: Iterable[Problem], verbose: bool) 
 
 
 def goal_lines(dataset: Dataset, goals: Sequence[ObjectNode], verbose: bool) -> Iterator[str]:
-    """Yield a line on the goals that were assumed, and on their origin.
+    """Yield a line that ``goals`` were assumed, and on their origin.
 
-    With ``verbose``, a line for each goal follows if there are several.
+    The line names the goal if there is only one. If there are several, ``verbose`` adds a line for each.
     """
     origin = {"": "of the goals file", MARKED: "marked in the files"}.get(dataset.goals_from)
     if len(goals) == 1:

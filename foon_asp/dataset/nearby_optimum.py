@@ -45,10 +45,15 @@ REFINEMENT = RefinementTuning()
 
 
 def near_goals(problem: Problem, objectives: Sequence[Objective], settings: Settings) -> "Nearby | None":
-    """Return the units of a large store near the goals of a problem, as a :class:`Nearby`.
+    """Return the units that were read of a large store, near the goals of a problem.
 
-    Return ``None`` if the problem is not about a large store, or if its settings or objectives need all
-    units.
+    More units can be read in the result without changing the problem.
+
+    Return ``None`` if :func:`solve_nearby` does not apply:
+    - if the problem is not about a large store, or all its units were read,
+    - if an objective is not built in, or does not only add or multiply values of units,
+    - if a rule is not antimonotone, or
+    - if the settings have options of clingo, or not all reductions.
     """
     nearby_of: Callable[[], Nearby | None] | None = getattr(problem, "nearby", None)
     if nearby_of is None or settings.reductions != ALL or settings.clingo_options:
@@ -70,9 +75,12 @@ def solve_nearby(
     only clingo can check, the units of the optimal tree without rules are read first, then those of the
     smallest tree that keeps the rules.
 
-    At a limit, return the best tree among the units read, with the bound of the relaxation. Return ``None``
-    if no tree exists even without rules: the caller then reads all units, to explain why. Of the trees, only
-    the last one is reported.
+    At a limit or ctrl-C, return the best tree among the units read, or an outcome without a tree. Its bound
+    on the first objective is the tightest of all rounds. If the rules exclude all trees, return an outcome
+    that says so. Return ``None`` if no tree exists even without rules: the caller then reads all units, to
+    explain why.
+
+    Warnings and bounds are passed to ``reporter``, but of the trees only the last one.
     """
     reporter = reporter or Reporter()
     if settings.constraints:
@@ -150,7 +158,7 @@ def solve_nearby(
 def _may_have_tree(nearby: "Nearby", deadline: Deadline) -> bool:
     """Whether the goals have a tree without rules; units are read until that is known.
 
-    Returns true at a limit, too.
+    At a limit or ctrl-C, which stops the deadline, return true.
     """
     while True:
         relaxed = nearby.relaxation
@@ -172,9 +180,9 @@ def _may_have_tree(nearby: "Nearby", deadline: Deadline) -> bool:
 def _read_smallest_tree(nearby: "Nearby", settings: Settings, units_of_rules: set[int]) -> list[int]:
     """Search for the tree of fewest units that keeps the rules, reading units until it is found.
 
-    Return its units by id in the whole network; empty if there is no tree, or at a limit. The fewest units
-    are found faster than the optimum of other objectives, and better trees mostly use units near this tree.
-    ``units_of_rules`` collects the units on which the rules depend.
+    Return its units by id in the whole network. Return an empty list if there is no such tree, and at a limit
+    or ctrl-C. The fewest units are found faster than the optimum of other objectives, and better trees mostly
+    use units near this tree. ``units_of_rules`` collects the ids of the units on which the rules depend.
     """
     while True:
         outcome = solve(nearby.relaxation, (Objective.UNITS,), settings, mattered=units_of_rules)
@@ -196,9 +204,9 @@ def _read_more(
 ) -> None:
     """Read more units that lead to ``open_nodes``, which an optimal tree of the relaxation uses.
 
-    If many units were read before and there are no rules, repeat this for trees found by ``h_add``, until one
-    uses no open node. Such trees mostly lead to the units of an optimal tree, in a tenth of the time of a
-    proof.
+    If more than :attr:`RefinementTuning.proved_units` units were read before, and there are no rules, go on
+    with trees that ``h_add`` finds, until one uses no open node. Such trees mostly lead to the units of an
+    optimal tree, in a tenth of the time of a proof.
     """
     many_read = nearby.unit_count > REFINEMENT.proved_units
     long_rounds = many_read or need_clingo(settings)
@@ -217,10 +225,10 @@ def _read_more(
 def least_with_more(
     costs: Costs, order: Sequence[Objective], extra_units: int = 1
 ) -> tuple[int | Fraction, ...]:
-    """Return a lower bound on the cost of any tree with at least ``extra_units`` more units than ``costs``.
+    """Return a lower bound on the cost of a tree with at least ``extra_units`` more units than ``costs`` has.
 
-    The tree costs at least ``costs`` by every objective. The bound has the cost by each objective in
-    ``order``.
+    The tree must cost at least ``costs`` by every objective. The result has the cost by each objective of
+    ``order``, one of which is ``units``.
     """
     least_costs = dict(zip(order, costs.key(order), strict=True))
     least_costs[Objective.UNITS] += extra_units
@@ -228,7 +236,10 @@ def least_with_more(
 
 
 class _WarningsAndBounds(Reporter):
-    """A reporter that passes on warnings and bounds, but no trees, which may not be trees of the whole."""
+    """A reporter that passes on warnings and bounds, but no trees and no steps.
+
+    A tree of the relaxation may not be a tree of the whole network.
+    """
 
     def __init__(self, reporter: Reporter) -> None:
         self.warning = reporter.warning  # type: ignore[method-assign]

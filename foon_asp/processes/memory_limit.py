@@ -4,9 +4,9 @@ import contextlib
 
 
 def limit_own_memory(size: int | None) -> None:
-    """Limit the data segment of this process to ``size`` bytes, if the system can; ``None`` is no limit.
+    """Limit the data segment of this process to ``size`` bytes, if the system can; ``None`` removes a limit.
 
-    The parent process only polls the memory, which may grow too fast for that.
+    This is for the case that memory grows too fast for the parent process, which only polls it.
     """
     try:
         import resource  # noqa: PLC0415 (not on every system)

@@ -104,7 +104,7 @@ class Desk:
         """
         dataset = self._foon.dataset
         return {
-            "goals": [*entry_names(dataset.listed, dataset.names)],
+            "goals": [*entry_names(dataset.goal_entries, dataset.names)],
             "kitchen": sorted(str(dataset.names.node(o)) for o in dataset.kitchen),
             "objectives": [*Objective, *dataset.measures],
             "beside": [*PagePart],
