@@ -50,8 +50,8 @@ def checker(
     It raises :class:`UserError` for a value that its annotation does not allow. It raises ``TypeError`` for
     arguments that do not fit the ``signature``, by default that of ``function``.
 
-    A value that one annotation cannot express is allowed: annotations that are strings allow all values, and
-    keys, values and items of mappings and iterators are not checked.
+    Annotations that are strings allow all values. Keys and values of mappings are not checked, nor are items
+    of iterators, since these can be read only once.
     """
     allowed = signature or inspect.signature(function)
     annotations = {name: parameter.annotation for name, parameter in allowed.parameters.items()}

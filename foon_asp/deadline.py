@@ -113,7 +113,7 @@ _CANCEL: ContextVar[Cancel | None] = ContextVar("cancel", default=None)
 
 @contextlib.contextmanager
 def stoppable(seconds: float | None, token: Cancel | None, doing: str) -> Iterator["Deadline"]:
-    """Limit the time of a ``with`` block, and cancel it by a token; deadlines made in the block obey both.
+    """Limit the time of a ``with`` block, and cancel it by a token that its deadlines obey.
 
     ``seconds``: the time limit; ``None`` for no limit.
     ``token``: the token; with ``None``, that of an outer block counts.
@@ -551,8 +551,9 @@ class Watch:
         )
 
     def _interrupt(self) -> None:
-        """Raise ``KeyboardInterrupt`` in the watched thread, by a signal or else when it next runs Python
-        code.
+        """Raise ``KeyboardInterrupt`` in the watched thread, by a signal if that is possible.
+
+        Otherwise, it is raised when the thread next runs Python code.
         """
         if self._is_woken_by_signals:
             signal.pthread_kill(self._thread, signal.SIGINT)  # also wakes it from blocking reads
@@ -621,8 +622,9 @@ def parse_memory_size(number: int | str, quantity: str = "the memory limit") -> 
 
 
 def size_text(size: int) -> str:
-    """Return a size in bytes as text, in the largest unit in which it is a whole number: ``2G``, ``100
-    bytes``.
+    """Return a size in bytes as text, in the largest unit in which it is a whole number.
+
+    Examples are ``2G`` and ``100 bytes``.
     """
     for letter in "TGMK":
         if size % _UNITS[letter] == 0:

@@ -149,7 +149,10 @@ async def _stream_events(
 
     ``read`` returns, from the body of the request, the function that answers the question. Before the
     question begins, the current one is cancelled. The question runs in a thread, and is cancelled when the
-    connection is closed. A body that is too long or no question gets an error as a response.
+    connection is closed.
+
+    A body of more than 1,000,000 bytes is answered with status 413, and one that is no question with status
+    400.
     """
     body = b""
     async for chunk in request.stream():
