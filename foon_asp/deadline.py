@@ -41,7 +41,7 @@ class _Pace(NamedTuple):
         grace_seconds: The least time for the last piece of work if it begins at a limit.
         poll_seconds: The time between two checks of the memory. A longer time overshoots the limit, a shorter
             one costs time.
-        interrupts: The greatest number of interrupts that are sent, since destructors lose some.
+        max_interrupts: The greatest number of interrupts that are sent, since destructors lose some.
         interrupt_seconds: The time between two interrupts.
         lost_polls: The number of polls until an interrupt counts as lost: a second in all.
         handover_seconds: The time between two checks of whether another thread has sent its interrupt.
@@ -51,7 +51,7 @@ class _Pace(NamedTuple):
     memory_tolerance_seconds: float = 0.1
     grace_seconds: float = 0.25
     poll_seconds: float = 0.02
-    interrupts: int = 5
+    max_interrupts: int = 5
     interrupt_seconds: float = 3.0
     lost_polls: int = 50
     handover_seconds: float = 0.001
@@ -194,20 +194,20 @@ class Deadline:
             )
         self.seconds, self.memory = seconds, memory
         self._doing = "reading"
-        self._end = None if seconds is None else (time.monotonic() if began is None else began) + seconds
+        self._end_time = None if seconds is None else (time.monotonic() if began is None else began) + seconds
         self._within = within
         if within is not None:
-            if within._end is not None and (self._end is None or within._end < self._end):
-                self.seconds, self._end = within.seconds, within._end
+            if within._end_time is not None and (self._end_time is None or within._end_time < self._end_time):
+                self.seconds, self._end_time = within.seconds, within._end_time
             if within.memory is not None and (memory is None or within.memory < memory):
                 self.memory = within.memory
-        self._time_words = "" if self.seconds is None else f"the time limit of {self.seconds:g} s"
-        self._workers: set[int] = set()
-        self._memory_polled = 0.0
+        self._time_limit_text = "" if self.seconds is None else f"the time limit of {self.seconds:g} s"
+        self._counted_processes: set[int] = set()
+        self._memory_polled_at = 0.0
         self._stopped_by: str | None = None
         self._token = _CANCEL.get()
         self._tolerance = _PACE.tolerance_seconds
-        self._noticed: float | None = None  # when ``overdue`` first saw that the deadline has passed
+        self._noticed_at: float | None = None  # when ``overdue`` first saw that the deadline has passed
 
     @property
     def doing(self) -> str:
@@ -234,13 +234,13 @@ class Deadline:
         if self._token is not None and self._token.cancelled:
             self._stopped_by = _CANCELLED
             return True
-        if self._end is None and self.memory is None:
+        if self._end_time is None and self.memory is None:
             return False
         now = time.monotonic()
-        if self._end is not None and now >= self._end:
-            self._stopped_by = self._time_words
-        elif self.memory is not None and now >= self._memory_polled + _PACE.poll_seconds:
-            self._memory_polled = now
+        if self._end_time is not None and now >= self._end_time:
+            self._stopped_by = self._time_limit_text
+        elif self.memory is not None and now >= self._memory_polled_at + _PACE.poll_seconds:
+            self._memory_polled_at = now
             if self.memory_in_use() > self.memory:
                 self.stop_out_of_memory()
         return self._stopped_by is not None
@@ -253,7 +253,7 @@ class Deadline:
     @property
     def remaining_seconds(self) -> float | None:
         """The seconds until the time limit, at least 0; ``None`` without a time limit."""
-        return None if self._end is None else max(0.0, self._end - time.monotonic())
+        return None if self._end_time is None else max(0.0, self._end_time - time.monotonic())
 
     @property
     def is_limited(self) -> bool:
@@ -262,21 +262,22 @@ class Deadline:
 
     @property
     def overdue(self) -> bool:
-        """Whether to stop even without an answer: half a second after the limit, a proof or ctrl-C.
+        """Whether to stop even without an answer, since the time to end with one is over.
 
-        It is a quarter of a second after a cancel, and 0.1 seconds after the memory limit. In
-        :func:`stoppable`, the first two times are three times as long.
+        This time is half a second after the time limit, a proof or ctrl-C. It is a quarter of a second after
+        a cancel, and 0.1 seconds after the memory limit. For the deadline of :func:`stoppable`, all but the
+        last are three times as long.
         """
         if not self.passed:
             return False
         if self._stopped_by == _CANCELLED:
             return self._token is None or self._token.since(self._tolerance / 2)
         now = time.monotonic()
-        if self._end is not None and self._stopped_by == self._time_words:
-            return now >= self._end + self._tolerance
-        if self._noticed is None:
-            self._noticed = now
-        return now >= self._noticed + (
+        if self._end_time is not None and self._stopped_by == self._time_limit_text:
+            return now >= self._end_time + self._tolerance
+        if self._noticed_at is None:
+            self._noticed_at = now
+        return now >= self._noticed_at + (
             _PACE.memory_tolerance_seconds if self.is_out_of_memory else self._tolerance
         )
 
@@ -287,7 +288,7 @@ class Deadline:
         Then the current work may finish, but no other work is begun.
         """
         return self._stopped_by is not None and self._stopped_by not in {
-            self._time_words,
+            self._time_limit_text,
             _CANCELLED,
             _PROVED,
             _INTERRUPTED,
@@ -342,15 +343,15 @@ class Deadline:
 
     def memory_in_use(self) -> int:
         """Return the resident memory of this process and of the counted ones, in bytes."""
-        return sum(_resident_bytes(Path(f"/proc/{pid}/statm")) for pid in ("self", *self._workers))
+        return sum(_resident_bytes(Path(f"/proc/{pid}/statm")) for pid in ("self", *self._counted_processes))
 
     def count_memory_of(self, process: int) -> None:
         """Count the memory of another process, by its id, towards the memory limit."""
-        self._workers.add(process)
+        self._counted_processes.add(process)
 
     def uncount_memory_of(self, process: int) -> None:
         """Stop counting the memory of another process."""
-        self._workers.discard(process)
+        self._counted_processes.discard(process)
 
     def watched(self, doing: str, late: bool = False, grace: bool = False) -> "Watch":
         """Return a context that interrupts its block at the limits, for code that does not check them.
@@ -404,8 +405,8 @@ def resend_lost_interrupts() -> Iterator[None]:
 def uninterrupted() -> Iterator[None]:
     """Defer ctrl-C and interrupts of :class:`Watch` in a ``with`` block until its end.
 
-    An example of its use are imports: a C library that is interrupted during its import raises
-    ``ImportError``, and cannot be imported any more.
+    Imports need this: a C library that is interrupted during its import raises ``ImportError``, and cannot be
+    imported any more.
     """
     deferred: list[int] = []
     shield, thread = object(), threading.get_ident()
@@ -443,7 +444,7 @@ if hasattr(os, "register_at_fork"):
 class Watch:
     """A context in which a background thread polls a deadline and interrupts this thread as ctrl-C does.
 
-    The parameters are those of :meth:`Deadline.watched`. An interrupt at the very end of the block leaves the
+    The parameters are those of :meth:`Deadline.watched`. Ctrl-C at the very end of the block leaves the
     context as ``KeyboardInterrupt``.
     """
 
@@ -514,28 +515,28 @@ class Watch:
         due = self._deadline.overdue if self._late else self._deadline.passed
         return due and time.monotonic() >= self._earliest
 
-    def poll(self, interrupts: int) -> tuple[float, int] | None:
-        """Poll the deadline; if it is due, interrupt the thread. ``interrupts`` were sent before.
+    def poll(self, interrupt_count: int) -> tuple[float, int] | None:
+        """Poll the deadline; if it is due, interrupt the thread. ``interrupt_count`` were sent before.
 
         Interrupts are repeated, since some are lost, and postponed while the thread is in
         :func:`uninterrupted`. Return the seconds until the next poll and the number of interrupts sent so
         far. Return ``None`` after the last poll.
         """
-        if self._finished or interrupts == _PACE.interrupts:
+        if self._finished or interrupt_count == _PACE.max_interrupts:
             return None
         if not self._is_due:
-            return max(_PACE.poll_seconds, self._deadline.seconds_to_next_check()), interrupts
+            return max(_PACE.poll_seconds, self._deadline.seconds_to_next_check()), interrupt_count
         _targets.append(self._thread)
         try:
             if self._finished:
                 return None
             if self._thread in _shields.values():
-                return _PACE.poll_seconds, interrupts
+                return _PACE.poll_seconds, interrupt_count
             self._interrupted = True
             self._interrupt()
         finally:
             _targets.remove(self._thread)
-        return _PACE.interrupt_seconds, interrupts + 1
+        return _PACE.interrupt_seconds, interrupt_count + 1
 
     @property
     def _is_woken_by_signals(self) -> bool:
@@ -570,17 +571,17 @@ def _poll_until_end(watching: "weakref.ref[Watch]", wake: "SimpleQueue[None]") -
 
     Polling also ends if the watch is garbage collected, because an interrupt prevented its end.
     """
-    pause, interrupts = _PACE.poll_seconds, 0
+    pause, interrupt_count = _PACE.poll_seconds, 0
     while True:
         with contextlib.suppress(Empty):
             wake.get(timeout=pause)
             return
         watch = watching()
-        next_poll = None if watch is None else watch.poll(interrupts)
+        next_poll = None if watch is None else watch.poll(interrupt_count)
         del watch
         if next_poll is None:
             return
-        pause, interrupts = next_poll
+        pause, interrupt_count = next_poll
 
 
 def _resident_bytes(statm: Path) -> int:

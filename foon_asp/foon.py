@@ -222,8 +222,8 @@ def build(
     with _time_limit_context(time_limit, cancel, "building"):
         total = len(units) if isinstance(units, Sized) else 0
         with _progress_counter(on_progress, total) as tell:
-            stated = StatedAmounts()
-            network = units if isinstance(units, Network) else _build_network(units, stated, tell)
+            stated_amounts = StatedAmounts()
+            network = units if isinstance(units, Network) else _build_network(units, stated_amounts, tell)
         making_units = [unit for unit, outputs in enumerate(network.outputs) if outputs]
         last_maker = {making_units[-1]: Source("the units", making_units[-1] + 1)} if making_units else {}
         assumed_goals = tuple(entry for entry in last_goals(network, last_maker)) if goals is None else ()
@@ -231,7 +231,7 @@ def build(
         kitchen_ids = starting_kitchen(network).nodes if starting else frozenset[int]()
         data = Data(network, kitchen_ids, (), assumed_goals, None, frozenset(utensils), (), 0, None, starting)
         data = data._replace(
-            goals_from=LAST if goals is None else "", amounts=stated.amounts_by_unit(network)
+            goals_from=LAST if goals is None else "", amounts=stated_amounts.amounts_by_unit(network)
         )
         dataset = (
             Dataset.of(data)

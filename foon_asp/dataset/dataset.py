@@ -111,9 +111,9 @@ class Dataset:
     ``stand_ins``: the table of stand-ins; ``None`` where nothing may stand in.
     ``stock``: the amounts that the kitchen states; other items never run out.
 
-    A dataset never changes: the methods ``with_...`` and ``vary`` return another one. If these change
-    kitchen, goals, rates or prices, the remarks are dropped. If they change kitchen, rates or prices,
-    ``has_kitchen`` becomes true.
+    A dataset never changes: the methods ``with_...`` and ``vary`` return another one. It has no remarks if
+    kitchen, goals, rates or prices are changed. Its ``has_kitchen`` is true if kitchen, rates or prices are
+    changed. :meth:`with_kitchen_for` is an exception from both.
     """
 
     source: DataSource
@@ -180,7 +180,10 @@ class Dataset:
         return self._data_with(network, self.kitchen.ids)._replace(kitchen_items=items)
 
     def _data_of_network(self, network: Network) -> Data:
-        """Return the data of this dataset over ``network``, which is a part of the network or all of it."""
+        """Return the data of this dataset over ``network``, which is a part of the network or all of it.
+
+        The kitchen is matched to the ids of ``network``.
+        """
         if network is self.names:
             return self.data
         kitchen = (local_id for local_id, o in enumerate(network.object_numbers) if o in self.kitchen)
@@ -281,7 +284,7 @@ class Dataset:
 
     def assumed_goals(self) -> list[ObjectNode]:
         """Return the goals that were assumed because no file lists goals; an empty list if a file does."""
-        return self.goal_entries_goals() if self.goals_from else []
+        return self.listed_goals() if self.goals_from else []
 
     def listed_goals(self) -> list[ObjectNode]:
         """Return the goals of the goals file, or if there is no file, those that were assumed, each once."""
@@ -344,9 +347,9 @@ class Dataset:
     def with_remarks(
         self, warnings: Iterable[str], brief: Iterable[str], remarks: Sequence[str], has_kitchen: bool
     ) -> "Dataset":
-        """Return the same data with remarks: the ``warnings``, then ``remarks``.
+        """Return the same data with other remarks: ``warnings``, then ``remarks``.
 
-        In :attr:`brief`, the texts ``brief``, a summary of the warnings, take their place. ``has_kitchen``
+        Its :attr:`brief` remarks are ``brief``, a summary of the warnings, then ``remarks``. ``has_kitchen``
         says whether a kitchen was given.
         """
         all_remarks, brief_remarks = (*warnings, *remarks), (*brief, *remarks)
@@ -462,7 +465,7 @@ class Dataset:
         return _with_own_rates(extended, problem)
 
     def extend_to_units(self, problem: Problem, units: Iterable[FunctionalUnit]) -> Problem:
-        """Return the same problem over a part of the network that has the given units and nodes of goals.
+        """Return the same problem over a part of the network that has its goals and at least the given units.
 
         Of a network in memory, the part is the whole network.
         """

@@ -96,7 +96,11 @@ def items_of(
         return None
     require_contents(dataset.names.level)
     exceptions = {} if stays is None else _read_exceptions(dataset, stays)
-    copies = {node: n for node, n in dataset.stock.items() if dataset.at_hand(node_id(dataset, node, "item"))}
+    copies = {
+        node: count
+        for node, count in dataset.stock.items()
+        if dataset.at_hand(node_id(dataset, node, "item"))
+    }
     if stock is not None:
         copies |= _read_stock_copies(dataset, stock)
     return UsedUp(exceptions, copies, {node: amount for node, amount in wanted.items() if amount > 1})
@@ -122,7 +126,8 @@ def _read_exceptions(dataset: Dataset, stays: Stays) -> dict[str | ObjectNode, b
     else:
         try:
             exceptions = {
-                stated_name(n) if isinstance(n, str) else n: bool(lasts) for n, lasts in stays.items()
+                stated_name(name) if isinstance(name, str) else name: bool(lasts)
+                for name, lasts in stays.items()
             }
         except LineError as error:
             raise UserError(f"what stays: {error}") from None

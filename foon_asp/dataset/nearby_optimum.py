@@ -86,8 +86,8 @@ def solve_nearby(
     if settings.constraints:
         program_of(nearby.problem, settings, reporter.warning)  # warns of names that the rules alone have
     deadline = settings.begun
-    with_rules = settings._replace(deadline=deadline)
-    without_rules = with_rules._replace(constraints=(), constants=())
+    settings_with_rules = settings._replace(deadline=deadline)
+    settings_without_rules = settings_with_rules._replace(constraints=(), constants=())
     first_objective = levels(tuple(objectives))[0]
     tighter = min if multiplies(first_objective) else max
     bounds_found: list[int | Fraction] = []  # on the first objective
@@ -95,7 +95,7 @@ def solve_nearby(
     smallest_tree: list[int] | None = None  # with the rules, by number; ``None`` before the search
     unconstrained: Outcome | None = None
     if need_clingo(settings):  # the optimum without rules is needed anyway, and read quickly
-        unconstrained = solve_nearby(nearby, objectives, without_rules, _WarningsAndBounds(reporter))
+        unconstrained = solve_nearby(nearby, objectives, settings_without_rules, _WarningsAndBounds(reporter))
         if unconstrained is None:
             return None
         bounds_found += [
@@ -104,7 +104,7 @@ def solve_nearby(
     while True:
         problem = nearby.problem
         outcome = solve(
-            nearby.relaxation, objectives, with_rules, _WarningsAndBounds(reporter), units_of_rules
+            nearby.relaxation, objectives, settings_with_rules, _WarningsAndBounds(reporter), units_of_rules
         )
         if outcome.status is Status.INFEASIBLE:
             excluded_by_rules = unconstrained is not None or (
@@ -125,7 +125,7 @@ def solve_nearby(
                     smallest_tree = (
                         []
                         if first_objective is Objective.UNITS
-                        else _read_smallest_tree(nearby, with_rules, units_of_rules)
+                        else _read_smallest_tree(nearby, settings_with_rules, units_of_rules)
                     )
                 continue
         bounds = (
@@ -133,10 +133,12 @@ def solve_nearby(
         )
         outcome = outcome._replace(problem=problem, bounds=bounds)
         if open_nodes:  # at a limit: the bound holds, and the units read may have a tree
-            outcome_of_read = solve(problem, objectives, with_rules, _WarningsAndBounds(Reporter()))
-            status = Status.UNKNOWN if outcome_of_read.units is None else Status.FEASIBLE
+            outcome_of_units_read = solve(
+                problem, objectives, settings_with_rules, _WarningsAndBounds(Reporter())
+            )
+            status = Status.UNKNOWN if outcome_of_units_read.units is None else Status.FEASIBLE
             outcome = outcome._replace(
-                status=status, units=outcome_of_read.units, costs=outcome_of_read.costs
+                status=status, units=outcome_of_units_read.units, costs=outcome_of_units_read.costs
             )
         if outcome.status is Status.UNKNOWN and smallest_tree:
             units = [

@@ -58,9 +58,9 @@ def solve_nearby_under(
     """
     if not settings.constraints or reach_of_rules(settings) is ReachOfRules.ALL:
         return None
-    without_rules = settings._replace(constraints=(), constants=())
-    nearby = near_goals(problem, objectives, without_rules)
-    unconstrained = None if nearby is None else solve_nearby(nearby, objectives, without_rules)
+    settings_without_rules = settings._replace(constraints=(), constants=())
+    nearby = near_goals(problem, objectives, settings_without_rules)
+    unconstrained = None if nearby is None else solve_nearby(nearby, objectives, settings_without_rules)
     if nearby is None or unconstrained is None or (unconstrained.units is None and not unconstrained.stopped):
         return None
     program_of(nearby.problem, settings, reporter.warning)

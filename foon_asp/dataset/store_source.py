@@ -154,8 +154,8 @@ class StoreSource(DataSource):
         has_prices = self.prices.motions is not None or single_prices is not None
         prices = UnitPrices(self.prices.motions or {}, single_prices or {}) if has_prices else None
         computed = Subject(network, kitchen, None, frozenset(), prices).digests()
-        for name, stated in store.digests.items():
-            if stated != computed[name]:
+        for name, stated_digest in store.digests.items():
+            if stated_digest != computed[name]:
                 raise UserError(
                     f"{store.name}: the digest of the {name} that the store states is not that of what is in "
                     "it, so it was changed after the import; import its source files again"

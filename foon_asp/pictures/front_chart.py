@@ -53,10 +53,12 @@ def write_front_chart(front: PlottedFront, file: Path) -> None:
         additive.remove(series)
     x, y = additive[0], Objective.SUCCESS if Objective.SUCCESS in front.objectives else additive[1]
     upwards = multiplies(y)
-    values = columns[series] if series else [0] * len(front.points)
-    texts = success_texts(columns[y]) if upwards else list(map(str, columns[y]))
-    points = sorted(zip(map(float, columns[x]), map(float, columns[y]), values, texts, strict=True))
-    series_values = sorted(set(values))
+    series_of_points = columns[series] if series else [0] * len(front.points)
+    y_texts = success_texts(columns[y]) if upwards else list(map(str, columns[y]))
+    points = sorted(
+        zip(map(float, columns[x]), map(float, columns[y]), series_of_points, y_texts, strict=True)
+    )
+    series_values = sorted(set(series_of_points))
     title = f"{front.goals}\n{y} over {x}{f' by {series}' if series else ''} ({front.conditions})"
     if not front.complete:
         title += "\nstopped at a limit: points may be missing"

@@ -18,8 +18,8 @@ def plan_drawing(problem: Problem, units: Sequence[FunctionalUnit], caption: str
     replay = replay_for(problem, units)
     sources = [{copy.node: copy.made for copy in (*step.gone, *step.stayed)} for step in replay.steps]
     sources += [{} for _ in units[len(sources) :]]
-    final = {copy.node: copy.made for copy in replay.left}
-    goal_sources = {goal: final.get(goal) for goal in problem.goal_nodes}
+    makers_at_end = {copy.node: copy.made for copy in replay.left}
+    goal_sources = {goal: makers_at_end.get(goal) for goal in problem.goal_nodes}
     kitchen = {node for unit in units for node in unit.inputs if problem.at_hand(node)}
     runs = "runs" if replay.shortage is None else f"does not run for want of {replay.shortage.node}"
     caption = caption or f"{runs} ({problem.conditions}), {counted(len(units), 'unit')}"

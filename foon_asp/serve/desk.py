@@ -117,8 +117,8 @@ class Desk:
         settings, stays_of, stock = self._settings, self._used_up.told, self._used_up.stock
         rules = (rule.name if isinstance(rule, Path) else str(rule) for rule in settings.constraints)
         encodings = [] if settings.encodings is None else [f"encodings: {settings.encodings.name}"]
-        counts = [f"stock: {node} {count}" for node, count in stock.items()]
-        return [*rules, *settings.constants, *encodings, *counts] + [
+        stock_texts = [f"stock: {node} {count}" for node, count in stock.items()]
+        return [*rules, *settings.constants, *encodings, *stock_texts] + [
             f"{'stays' if stays else 'goes'}: {name}" for name, stays in stays_of.items()
         ]
 
@@ -204,19 +204,19 @@ class Desk:
             view, rules = self._kept_pages.get(form.page, (None, ()))
             if view is None or view.answer is None:
                 raise UserError("this page is no longer kept: ask again")
-            best, network = view.answer, view.answer.problem.network
-            if best.status is not Status.OPTIMAL:
+            best_answer, network = view.answer, view.answer.problem.network
+            if best_answer.status is not Status.OPTIMAL:
                 raise UserError("the tree is not proved best")
             unit = None if form.unit is None else network.unit_of_number(form.unit)
-            named = (o for o in best.problem.kitchen if str(network.objects[o]) == form.item)
-            item = next(named, None)
+            matching_items = (o for o in best_answer.problem.kitchen if str(network.objects[o]) == form.item)
+            item = next(matching_items, None)
             if unit is None and item is None:
                 raise UserError("the tree has nothing of that kind")
             settings = self._settings._replace(constraints=rules, deadline=deadline)
-            regret = regret_of(best, settings, unit, item)
-            text = regret.loss_text(best.objectives[0])
+            regret = regret_of(best_answer, settings, unit, item)
+            text = regret.loss_text(best_answer.objectives[0])
             if regret.costs is not None:
-                text += f"; the best is then {costs_text(regret.costs, best.objectives)}"
+                text += f"; the best is then {costs_text(regret.costs, best_answer.objectives)}"
             reporter.event({"kind": "without", "text": text})
 
         self._run_question(answer, token, send_event)
