@@ -128,7 +128,7 @@ class DataSource:
 
         Return ``None`` for a network in memory. The nodes of ``kitchen``, by id, are available. Inputs whose
         labels are ``utensils`` cost nothing. A unit costs 1, or if ``objective`` is ``success``, minus the
-        logarithm of its rate.
+        scaled logarithm of its rate; see :class:`UnitDistances`.
         """
         return None
 

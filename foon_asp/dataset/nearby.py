@@ -185,7 +185,7 @@ class NearbyProblem(Problem):
 
     @classmethod
     def of(cls, start: Nearby, units_at_first: int) -> "NearbyProblem":
-        """Make a problem from ``start``, over about ``units_at_first`` units that were read."""
+        """Make a problem from ``start``, for which about ``units_at_first`` units were read."""
         problem = cls(**{field.name: getattr(start.problem, field.name) for field in fields(Problem)})
         for name, value in (("start", start), ("units_at_first", units_at_first)):
             object.__setattr__(problem, name, value)
@@ -210,10 +210,10 @@ class NearbyProblem(Problem):
         return None if self.start is None or "full_problem" in vars(self) else self.start.copy()
 
     def single_goal_problems(self) -> list[Problem]:
-        """Return a problem for each goal by itself.
+        """Return a problem for each goal by itself, for which about ``units_at_first`` units are read.
 
-        For each, about ``units_at_first`` units are read. If all units of this problem were read, or if it
-        has its own values, these problems have its network instead.
+        If all units of this problem were read, or if it has its own values, nothing is read: these problems
+        have its network.
         """
         start = self.start
         if start is None or "full_problem" in vars(self):

@@ -53,7 +53,7 @@ def near_goals(problem: Problem, objectives: Sequence[Objective], settings: Sett
     - if the problem is not about a large store, or all its units were read,
     - if an objective is not built in, or does not only add or multiply values of units,
     - if a rule is not antimonotone, or
-    - if the settings have options of clingo, or not all reductions.
+    - if the settings have options of clingo, replaced encodings, or not all reductions.
     """
     nearby_of: Callable[[], Nearby | None] | None = getattr(problem, "nearby", None)
     if nearby_of is None or settings.reductions != ALL or settings.clingo_options:

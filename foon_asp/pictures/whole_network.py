@@ -53,8 +53,8 @@ class WholeNetwork(Value, frozen=True):
         coordinates = {
             box.unit if box.node is None else box.node: coordinates_by_name[box.name] for box in drawing.boxes
         }
-        places = [coordinates[network.unit_number(u)] for u in units]
-        places += [coordinates.get(node, (0, 0)) for node in network.objects]  # some nodes are in no unit
+        positions = [coordinates[network.unit_number(u)] for u in units]
+        positions += [coordinates.get(node, (0, 0)) for node in network.objects]  # some nodes are in no unit
         mentions = (mention_of(network, u) for u in units)
         return cls(
             nodes_of(network, objects),
@@ -62,7 +62,7 @@ class WholeNetwork(Value, frozen=True):
                 PlacedUnit(mention.id, mention.motion, mention.source, tuple(inputs), tuple(outputs))
                 for mention, inputs, outputs in zip(mentions, network.inputs, network.outputs, strict=True)
             ),
-            tuple(round(number) for place in places for number in place),
+            tuple(round(number) for position in positions for number in position),
             tuple(sorted(problem.kitchen)),
             tuple(o for o in objects if reached.available[o]),
             tuple(sorted(reached.units)),

@@ -6,7 +6,7 @@ import contextlib
 def limit_own_memory(size: int | None) -> None:
     """Limit the data segment of this process to ``size`` bytes, if the system can; ``None`` removes a limit.
 
-    This is for the case that memory grows too fast for the parent process, which only polls it.
+    The parent process only polls the memory of this process. Memory may grow too fast for that.
     """
     try:
         import resource  # noqa: PLC0415 (not on every system)
