@@ -59,7 +59,10 @@ def modules_of_names() -> dict[str, str]:
 
 
 def __getattr__(name: str) -> object:
-    """Import the module of a public name, and return what has this name."""
+    """Import the module of a public name, and return what has this name.
+
+    Raises ``AttributeError`` for any other name.
+    """
     if name == "__all__":
         return [*modules_of_names()]
     if name not in modules_of_names():

@@ -45,23 +45,25 @@ def typed(function: Callable[P, T]) -> Callable[P, T]:
 def checker(
     function: Callable[..., object], signature: inspect.Signature | None = None
 ) -> Callable[[tuple[object, ...], Mapping[str, object]], None]:
-    """Return a function that checks arguments, positional and named, against the annotations of ``function``.
+    """Return a function that checks positional and named arguments against the annotations of ``function``.
 
     It raises :class:`UserError` for a value that its annotation does not allow. It raises ``TypeError`` for
-    arguments that do not fit the ``signature``, by default that of the function. Items of iterators are not
-    checked, since they can be read only once. Annotations that are strings allow all values.
+    arguments that do not fit the ``signature``, by default that of ``function``.
+
+    Annotations that are strings allow all values. Keys and values of mappings are not checked, nor are items
+    of iterators, since these can be read only once.
     """
-    allowed = signature or inspect.signature(function)
-    annotations = {name: parameter.annotation for name, parameter in allowed.parameters.items()}
+    expected_signature = signature or inspect.signature(function)
+    annotations = {name: parameter.annotation for name, parameter in expected_signature.parameters.items()}
 
     def check(arguments: tuple[object, ...], named: Mapping[str, object]) -> None:
         """Raise an error if an argument is not allowed."""
         try:
-            bound = allowed.bind(*arguments, **named)
+            bound = expected_signature.bind(*arguments, **named)
         except TypeError as error:
             raise TypeError(f"{function.__name__}: {error}; it takes {', '.join(annotations)}") from None
         for name, argument in bound.arguments.items():
-            is_variadic = allowed.parameters[name].kind is inspect.Parameter.VAR_POSITIONAL
+            is_variadic = expected_signature.parameters[name].kind is inspect.Parameter.VAR_POSITIONAL
             for value in argument if is_variadic else (argument,):
                 if not _is_allowed(annotations[name], value):
                     words = _allowed_values(annotations[name])
@@ -71,12 +73,14 @@ def checker(
     return check
 
 
-def _is_allowed(kind: Any, value: object) -> bool:
+def _is_allowed(annotation: Any, value: object) -> bool:
     """Whether an annotation allows a value, as far as that can be checked at runtime.
 
+    Items are checked of lists, tuples and sets only. A text is not several values.
+    ``float`` allows integers, and neither ``float`` nor ``int`` allows ``True`` and ``False``.
     Annotations that are no types, such as strings, allow all values.
     """
-    origin, arguments = typing.get_origin(kind), typing.get_args(kind)
+    origin, arguments = typing.get_origin(annotation), typing.get_args(annotation)
     if origin in {typing.Union, types.UnionType, typing.Annotated}:
         alternatives = arguments[:1] if origin is typing.Annotated else arguments
         return any(_is_allowed(alternative, value) for alternative in alternatives)
@@ -85,7 +89,7 @@ def _is_allowed(kind: Any, value: object) -> bool:
             return False
         is_checkable = isinstance(value, list | tuple | set | frozenset) and len(arguments) == 1
         return not is_checkable or all(_is_allowed(arguments[0], item) for item in value)
-    expected = origin or (types.NoneType if kind is None else kind)
+    expected = origin or (types.NoneType if annotation is None else annotation)
     if not isinstance(expected, type) or expected is inspect.Parameter.empty:
         return True
     if expected in {int, float}:
@@ -94,13 +98,16 @@ def _is_allowed(kind: Any, value: object) -> bool:
 
 
 def _is_of_several_values(origin: Any) -> bool:
-    """Whether an annotation is of several values, by its origin; a mapping counts as one value."""
+    """Whether an annotation, given by its origin, is of several values, such as ``Sequence``.
+
+    A mapping counts as one value.
+    """
     return isinstance(origin, type) and issubclass(origin, Iterable) and not issubclass(origin, Mapping)
 
 
-def _allowed_values(kind: Any) -> Iterator[str]:
+def _allowed_values(annotation: Any) -> Iterator[str]:
     """Yield the values that an annotation allows, in words: ``a whole number``, ``text``."""
-    origin, arguments = typing.get_origin(kind), typing.get_args(kind)
+    origin, arguments = typing.get_origin(annotation), typing.get_args(annotation)
     if origin is typing.Annotated:
         yield from _allowed_values(arguments[0])
     elif origin in {typing.Union, types.UnionType}:
@@ -108,6 +115,6 @@ def _allowed_values(kind: Any) -> Iterator[str]:
             yield from _allowed_values(alternative)
     elif _is_of_several_values(origin):
         yield f"several such as [{', '.join(dict.fromkeys(_allowed_values(arguments[0])))}]"
-    elif kind is not types.NoneType:
-        name = (origin or kind).__name__ if isinstance(origin or kind, type) else ""
+    elif annotation is not types.NoneType:
+        name = (origin or annotation).__name__ if isinstance(origin or annotation, type) else ""
         yield _TYPE_WORDS.get(name, name) if name else "something else"

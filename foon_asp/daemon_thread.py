@@ -14,7 +14,7 @@ class DaemonThread:
     """A daemon thread that calls a function: the process does not wait for it at exit."""
 
     def __init__(self, function: Callable[..., object], *arguments: object) -> None:
-        """Start the thread."""
+        """Start the thread, which calls the function with the arguments."""
         self._finished = False
         self._wake: SimpleQueue[None] = SimpleQueue()
         _thread.start_new_thread(self._call, (function, arguments))
@@ -27,7 +27,7 @@ class DaemonThread:
         return self._finished
 
     def _call(self, function: Callable[..., object], arguments: tuple[object, ...]) -> None:
-        """Call the function, and record its end."""
+        """Call the function, and record its end, also if it raises an exception."""
         try:
             function(*arguments)
         finally:

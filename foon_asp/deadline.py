@@ -41,7 +41,7 @@ class _Pace(NamedTuple):
         grace_seconds: The least time for the last piece of work if it begins at a limit.
         poll_seconds: The time between two checks of the memory. A longer time overshoots the limit, a shorter
             one costs time.
-        interrupts: The greatest number of interrupts that are sent, since destructors lose some.
+        max_interrupts: The greatest number of interrupts that are sent, since destructors lose some.
         interrupt_seconds: The time between two interrupts.
         lost_polls: The number of polls until an interrupt counts as lost: a second in all.
         handover_seconds: The time between two checks of whether another thread has sent its interrupt.
@@ -51,7 +51,7 @@ class _Pace(NamedTuple):
     memory_tolerance_seconds: float = 0.1
     grace_seconds: float = 0.25
     poll_seconds: float = 0.02
-    interrupts: int = 5
+    max_interrupts: int = 5
     interrupt_seconds: float = 3.0
     lost_polls: int = 50
     handover_seconds: float = 0.001
@@ -113,11 +113,16 @@ _CANCEL: ContextVar[Cancel | None] = ContextVar("cancel", default=None)
 
 @contextlib.contextmanager
 def stoppable(seconds: float | None, token: Cancel | None, doing: str) -> Iterator["Deadline"]:
-    """Limit the time of a ``with`` block, and cancel it by a token; deadlines made in the block obey both.
+    """Limit the time of a ``with`` block, and cancel it by a token that its deadlines obey.
 
-    At a limit, code that checks its deadline has time to end with its incumbent. After this time, the block
-    is interrupted, and :class:`StoppedError` is raised. It is raised at once if the token was cancelled
-    before. ``doing`` describes the work for messages, as in "while reading".
+    ``seconds``: the time limit; ``None`` for no limit.
+    ``token``: the token; with ``None``, that of an outer block counts.
+    ``doing``: the work for messages, as in "while reading".
+
+    The context is the deadline of the block. :class:`StoppedError` is raised at once if the token was
+    cancelled before. Otherwise it is raised when the block is interrupted: with ``seconds``, at the limit or
+    as soon as the token is cancelled. Without ``seconds``, code that checks its deadline first has 0.75
+    seconds after a cancel to end with its incumbent. Ctrl-C is passed on.
     """
     if token is not None and token.cancelled:
         raise StoppedError("cancelled")
@@ -137,7 +142,7 @@ def stoppable(seconds: float | None, token: Cancel | None, doing: str) -> Iterat
 
 
 def _stop_reason(stop: KeyboardInterrupt, deadline: "Deadline") -> str:
-    """Return the words ``cancelled``, or ``stopped at`` and the limit."""
+    """Return ``cancelled`` if the token was cancelled; otherwise ``stopped at``, the limit and the work."""
     token = _CANCEL.get()
     if token is not None and token.cancelled:
         return "cancelled"
@@ -145,10 +150,13 @@ def _stop_reason(stop: KeyboardInterrupt, deadline: "Deadline") -> str:
 
 
 class LimitError(KeyboardInterrupt):
-    """A limit was reached, or ctrl-C pressed, before any answer.
+    """A limit was reached, the question was cancelled, or ctrl-C was pressed, before any answer.
 
     It is a ``KeyboardInterrupt``, so that code handles a limit like ctrl-C, and handlers of ``Exception`` do
-    not catch it. ``stopped`` is the limit and the work in words. ``advice`` is advice for the user.
+    not catch it.
+
+    ``stopped``: the limit and the work, in words.
+    ``advice``: advice for the user.
     """
 
     def __init__(self, deadline: "Deadline") -> None:
@@ -159,12 +167,13 @@ class LimitError(KeyboardInterrupt):
 class Deadline:
     """The limits of one question, shared by all its work, and the limit that stopped it.
 
-    ``doing`` describes the current work, as in "while reading".
+    It also obeys the token of the :func:`stoppable` block in which it is made. ``doing`` describes the
+    current work, as in "while reading".
 
     Parameters:
-        seconds: The time limit; ``None`` is no limit.
-        memory: The memory limit in bytes, for this process and its workers; ``None`` is no limit.
-        began: The start of the time, on the monotonic clock; ``None`` is now.
+        seconds: The time limit; ``None`` for no limit.
+        memory: The memory limit in bytes, for this process and its workers; ``None`` for no limit.
+        began: The start of the time, on the monotonic clock; by default, now.
         within: An outer deadline. The smaller limits of both apply, and ctrl-C ends both.
 
     Raises :class:`UserError` for a memory limit if the system does not report the memory in use.
@@ -185,24 +194,24 @@ class Deadline:
             )
         self.seconds, self.memory = seconds, memory
         self._doing = "reading"
-        self._end = None if seconds is None else (time.monotonic() if began is None else began) + seconds
+        self._end_time = None if seconds is None else (time.monotonic() if began is None else began) + seconds
         self._within = within
         if within is not None:
-            if within._end is not None and (self._end is None or within._end < self._end):
-                self.seconds, self._end = within.seconds, within._end
+            if within._end_time is not None and (self._end_time is None or within._end_time < self._end_time):
+                self.seconds, self._end_time = within.seconds, within._end_time
             if within.memory is not None and (memory is None or within.memory < memory):
                 self.memory = within.memory
-        self._time_words = "" if self.seconds is None else f"the time limit of {self.seconds:g} s"
-        self._workers: set[int] = set()
-        self._memory_polled = 0.0
+        self._time_limit_text = "" if self.seconds is None else f"the time limit of {self.seconds:g} s"
+        self._counted_processes: set[int] = set()
+        self._memory_polled_at = 0.0
         self._stopped_by: str | None = None
         self._token = _CANCEL.get()
         self._tolerance = _PACE.tolerance_seconds
-        self._noticed: float | None = None  # when ``overdue`` first saw that the deadline has passed
+        self._noticed_at: float | None = None  # when ``overdue`` first saw that the deadline has passed
 
     @property
     def doing(self) -> str:
-        """The current work, or the work at which the question was stopped."""
+        """The current work; if the question was stopped, the work at that time."""
         return self._doing
 
     @doing.setter
@@ -213,9 +222,9 @@ class Deadline:
 
     @property
     def passed(self) -> bool:
-        """Whether a limit is reached, or the question was interrupted or cancelled.
+        """Whether a limit is reached, or the question was stopped by a proof, a cancel or ctrl-C.
 
-        The first reason is kept for :attr:`stopped`. The memory is read only now and then.
+        The first reason is kept for :attr:`stopped`. Memory is read only every 0.02 seconds.
         """
         if self._stopped_by is not None:
             return True
@@ -225,26 +234,26 @@ class Deadline:
         if self._token is not None and self._token.cancelled:
             self._stopped_by = _CANCELLED
             return True
-        if self._end is None and self.memory is None:
+        if self._end_time is None and self.memory is None:
             return False
         now = time.monotonic()
-        if self._end is not None and now >= self._end:
-            self._stopped_by = self._time_words
-        elif self.memory is not None and now >= self._memory_polled + _PACE.poll_seconds:
-            self._memory_polled = now
+        if self._end_time is not None and now >= self._end_time:
+            self._stopped_by = self._time_limit_text
+        elif self.memory is not None and now >= self._memory_polled_at + _PACE.poll_seconds:
+            self._memory_polled_at = now
             if self.memory_in_use() > self.memory:
                 self.stop_out_of_memory()
         return self._stopped_by is not None
 
     @property
     def interrupted(self) -> bool:
-        """Whether ctrl-C was pressed."""
+        """Whether ctrl-C stopped the question."""
         return self._stopped_by == _INTERRUPTED
 
     @property
     def remaining_seconds(self) -> float | None:
         """The seconds until the time limit, at least 0; ``None`` without a time limit."""
-        return None if self._end is None else max(0.0, self._end - time.monotonic())
+        return None if self._end_time is None else max(0.0, self._end_time - time.monotonic())
 
     @property
     def is_limited(self) -> bool:
@@ -253,28 +262,33 @@ class Deadline:
 
     @property
     def overdue(self) -> bool:
-        """Whether to stop even without an answer: half a second after a time limit or ctrl-C.
+        """Whether to stop even without an answer, since the time to end with one is over.
 
-        The time is shorter after a cancel or the memory limit.
+        This time is half a second after the time limit, a proof or ctrl-C. It is a quarter of a second after
+        a cancel, and 0.1 seconds after the memory limit. For the deadline of :func:`stoppable`, all but the
+        last are three times as long.
         """
         if not self.passed:
             return False
         if self._stopped_by == _CANCELLED:
             return self._token is None or self._token.since(self._tolerance / 2)
         now = time.monotonic()
-        if self._end is not None and self._stopped_by == self._time_words:
-            return now >= self._end + self._tolerance
-        if self._noticed is None:
-            self._noticed = now
-        return now >= self._noticed + (
+        if self._end_time is not None and self._stopped_by == self._time_limit_text:
+            return now >= self._end_time + self._tolerance
+        if self._noticed_at is None:
+            self._noticed_at = now
+        return now >= self._noticed_at + (
             _PACE.memory_tolerance_seconds if self.is_out_of_memory else self._tolerance
         )
 
     @property
     def is_out_of_memory(self) -> bool:
-        """Whether memory stopped the question: current work may finish, but no other work is begun."""
+        """Whether memory stopped the question: the memory limit, or an allocation that failed.
+
+        Then the current work may finish, but no other work is begun.
+        """
         return self._stopped_by is not None and self._stopped_by not in {
-            self._time_words,
+            self._time_limit_text,
             _CANCELLED,
             _PROVED,
             _INTERRUPTED,
@@ -303,13 +317,13 @@ class Deadline:
     def stopped(self) -> str | None:
         """The limit that stopped the question, and the work that it stopped, in words.
 
-        An example is ``the time limit of 5 s while reading``. ``None`` if the question was not stopped.
+        An example is ``the time limit of 5 s while reading``. It is ``None`` if the question was not stopped.
         """
         return None if self._stopped_by is None else f"{self._stopped_by} while {self._doing}"
 
     @property
     def advice(self) -> str:
-        """A sentence of advice for the user about the limit, which depends on the current work."""
+        """A sentence of advice for the user about the limit; it depends on the work at that time."""
         return _ADVICE.get(self._doing, "raise the limit")
 
     def check(self) -> None:
@@ -318,7 +332,10 @@ class Deadline:
             raise LimitError(self)
 
     def seconds_to_next_check(self, longest: float = 0.2) -> float:
-        """Return the seconds to wait until the next check of the deadline, at most ``longest``."""
+        """Return the seconds to wait until the next check of the deadline.
+
+        They are at most ``longest``, at most the time left, and with a memory limit at most 0.04.
+        """
         if self.memory is not None:
             longest = min(longest, 2 * _PACE.poll_seconds)
         remaining = self.remaining_seconds
@@ -326,23 +343,25 @@ class Deadline:
 
     def memory_in_use(self) -> int:
         """Return the resident memory of this process and of the counted ones, in bytes."""
-        return sum(_resident_bytes(Path(f"/proc/{pid}/statm")) for pid in ("self", *self._workers))
+        return sum(_resident_bytes(Path(f"/proc/{pid}/statm")) for pid in ("self", *self._counted_processes))
 
     def count_memory_of(self, process: int) -> None:
         """Count the memory of another process, by its id, towards the memory limit."""
-        self._workers.add(process)
+        self._counted_processes.add(process)
 
     def uncount_memory_of(self, process: int) -> None:
         """Stop counting the memory of another process."""
-        self._workers.discard(process)
+        self._counted_processes.discard(process)
 
     def watched(self, doing: str, late: bool = False, grace: bool = False) -> "Watch":
         """Return a context that interrupts its block at the limits, for code that does not check them.
 
-        The context may raise :class:`LimitError` anywhere in the block. So the block must be safe to abort,
-        and must not handle ctrl-C itself. With ``late``, the block is interrupted only when overdue. With
-        ``grace``, it has at least a quarter of a second to finish an answer. ``doing`` becomes the current
-        work.
+        It may raise :class:`LimitError` at the start, and anywhere in the block. So the block must be safe to
+        abort, and must not handle ctrl-C itself.
+
+        ``doing``: becomes the current work.
+        ``late``: whether the block is interrupted only when it is overdue.
+        ``grace``: whether the block has at least a quarter of a second to finish an answer, also at a limit.
         """
         return Watch(self, doing, late, grace)
 
@@ -352,7 +371,7 @@ def resend_lost_interrupts() -> Iterator[None]:
     """Send interrupts again that Python loses in a ``with`` block of the main thread.
 
     Python only reports an exception in a destructor, and does not raise it. So ctrl-C in a destructor has no
-    effect, unless it is sent again.
+    effect, unless it is sent again. This works where the system can send signals to threads.
     """
     previous_hook = sys.unraisablehook
     main = threading.main_thread().ident or 0
@@ -386,8 +405,8 @@ def resend_lost_interrupts() -> Iterator[None]:
 def uninterrupted() -> Iterator[None]:
     """Defer ctrl-C and interrupts of :class:`Watch` in a ``with`` block until its end.
 
-    This is for imports: a C library that is interrupted during its import raises ``ImportError``, and cannot
-    be imported any more.
+    Imports need this: a C library that is interrupted during its import raises ``ImportError``, and cannot be
+    imported any more.
     """
     deferred: list[int] = []
     shield, thread = object(), threading.get_ident()
@@ -425,7 +444,7 @@ if hasattr(os, "register_at_fork"):
 class Watch:
     """A context in which a background thread polls a deadline and interrupts this thread as ctrl-C does.
 
-    The parameters are those of :meth:`Deadline.watched`. An interrupt at the very end of the block leaves the
+    The parameters are those of :meth:`Deadline.watched`. Ctrl-C at the very end of the block leaves the
     context as ``KeyboardInterrupt``.
     """
 
@@ -438,7 +457,10 @@ class Watch:
         self._wake: SimpleQueue[None] = SimpleQueue()
 
     def __enter__(self) -> Self:
-        """Start the background thread; raises :class:`LimitError` if the deadline allows no more work."""
+        """Set the current work, and start the background thread if the question has any limit.
+
+        Raises :class:`LimitError` if the deadline allows no more work.
+        """
         deadline = self._deadline
         deadline.doing = self._doing
         if self._is_due or (deadline.passed and deadline.is_out_of_memory and not self._has_grace):
@@ -458,7 +480,7 @@ class Watch:
     ) -> None:
         """Stop the background thread; raises :class:`LimitError` if it has sent an interrupt.
 
-        Any other interrupt stops the deadline as ctrl-C does.
+        Any other interrupt is ctrl-C: it stops the deadline, and is passed on.
         """
         received = kind is not None and issubclass(kind, KeyboardInterrupt)
         while True:  # an interrupt may come within this loop, which can be repeated
@@ -486,38 +508,43 @@ class Watch:
 
     @property
     def _is_due(self) -> bool:
-        """Whether to interrupt the block: the deadline has passed, or is overdue with ``late``.
+        """Whether to interrupt the block: the deadline has passed, or with ``late``, is overdue.
 
-        With ``grace``, the block is not interrupted in its first quarter of a second.
+        With ``grace``, it is false in the first quarter of a second of the block.
         """
         due = self._deadline.overdue if self._late else self._deadline.passed
         return due and time.monotonic() >= self._earliest
 
-    def poll(self, interrupts: int) -> tuple[float, int] | None:
-        """Poll the deadline, and interrupt the thread if it has passed; ``interrupts`` were sent before.
+    def poll(self, interrupt_count: int) -> tuple[float, int] | None:
+        """Poll the deadline; if it is due, interrupt the thread. ``interrupt_count`` were sent before.
 
-        Interrupts are repeated, since some are lost. Returns the seconds until the next poll and the number
-        of interrupts sent so far, or ``None`` after the last poll.
+        Interrupts are repeated, since some are lost, and postponed while the thread is in
+        :func:`uninterrupted`. Return the seconds until the next poll and the number of interrupts sent so
+        far. Return ``None`` after the last poll.
         """
-        if self._finished or interrupts == _PACE.interrupts:
+        if self._finished or interrupt_count == _PACE.max_interrupts:
             return None
         if not self._is_due:
-            return max(_PACE.poll_seconds, self._deadline.seconds_to_next_check()), interrupts
+            return max(_PACE.poll_seconds, self._deadline.seconds_to_next_check()), interrupt_count
         _targets.append(self._thread)
         try:
             if self._finished:
                 return None
             if self._thread in _shields.values():
-                return _PACE.poll_seconds, interrupts
+                return _PACE.poll_seconds, interrupt_count
             self._interrupted = True
             self._interrupt()
         finally:
             _targets.remove(self._thread)
-        return _PACE.interrupt_seconds, interrupts + 1
+        return _PACE.interrupt_seconds, interrupt_count + 1
 
     @property
     def _is_woken_by_signals(self) -> bool:
-        """Whether a signal interrupts the watched thread: it is the main one, and ctrl-C raises there."""
+        """Whether a signal interrupts the watched thread.
+
+        This is so if it is the main thread, ctrl-C raises ``KeyboardInterrupt`` there, and the system can
+        send signals to threads.
+        """
         return (
             self._thread == threading.main_thread().ident
             and hasattr(signal, "pthread_kill")
@@ -525,7 +552,10 @@ class Watch:
         )
 
     def _interrupt(self) -> None:
-        """Raise ``KeyboardInterrupt`` in the watched thread."""
+        """Raise ``KeyboardInterrupt`` in the watched thread, by a signal if that is possible.
+
+        Otherwise, it is raised when the thread next runs Python code.
+        """
         if self._is_woken_by_signals:
             signal.pthread_kill(self._thread, signal.SIGINT)  # also wakes it from blocking reads
             return
@@ -541,17 +571,17 @@ def _poll_until_end(watching: "weakref.ref[Watch]", wake: "SimpleQueue[None]") -
 
     Polling also ends if the watch is garbage collected, because an interrupt prevented its end.
     """
-    pause, interrupts = _PACE.poll_seconds, 0
+    pause, interrupt_count = _PACE.poll_seconds, 0
     while True:
         with contextlib.suppress(Empty):
             wake.get(timeout=pause)
             return
         watch = watching()
-        next_poll = None if watch is None else watch.poll(interrupts)
+        next_poll = None if watch is None else watch.poll(interrupt_count)
         del watch
         if next_poll is None:
             return
-        pause, interrupts = next_poll
+        pause, interrupt_count = next_poll
 
 
 def _resident_bytes(statm: Path) -> int:
@@ -565,7 +595,7 @@ def _resident_bytes(statm: Path) -> int:
 def parse_seconds(number: float | str, quantity: str = "the time limit") -> float:
     """Return a number of seconds, at least 0, from a number or a text.
 
-    Raises :class:`UserError` about the ``quantity`` for other values.
+    Raises :class:`UserError` for other values; ``quantity`` says in the message what they are.
     """
     try:
         value = float(number)
@@ -577,9 +607,9 @@ def parse_seconds(number: float | str, quantity: str = "the time limit") -> floa
 
 
 def parse_memory_size(number: int | str, quantity: str = "the memory limit") -> int:
-    """Return a size in bytes, from an integer or a text such as ``500M`` or ``2G``.
+    """Return a size in bytes, from an integer or a text such as ``500M`` or ``2.5G``; ``K`` is 1024 bytes.
 
-    Raises :class:`UserError` about the ``quantity`` for other values.
+    Raises :class:`UserError` for other values, also 0; ``quantity`` says in the message what they are.
     """
     if isinstance(number, int) and not isinstance(number, bool) and number > 0:
         return number
@@ -593,7 +623,10 @@ def parse_memory_size(number: int | str, quantity: str = "the memory limit") -> 
 
 
 def size_text(size: int) -> str:
-    """Return a size in bytes as a text in the largest unit in which it is a whole number: ``2G``."""
+    """Return a size in bytes as text, in the largest unit in which it is a whole number.
+
+    Examples are ``2G`` and ``100 bytes``.
+    """
     for letter in "TGMK":
         if size % _UNITS[letter] == 0:
             return f"{size // _UNITS[letter]}{letter}"

@@ -129,7 +129,8 @@ def load(
 def _progress_counter(on_progress: OnProgress | None, total: int) -> Iterator[Callable[[int], None]]:
     """Yield a function for a ``with`` block that adds a number to the progress, and reports the sum.
 
-    At the end of the block, the progress is reported as complete.
+    At the end of the block, the progress is reported as complete, if it was not before. ``total`` is 0 if it
+    is unknown. Without ``on_progress``, nothing is reported.
     """
     done = 0
 
@@ -147,7 +148,11 @@ def _progress_counter(on_progress: OnProgress | None, total: int) -> Iterator[Ca
 def _time_limit_context(
     time_limit: float | None, cancel: Cancel | None, doing: str
 ) -> contextlib.AbstractContextManager[object]:
-    """Return a context that stops its ``with`` block at a time limit or by a token; ``None`` is no limit."""
+    """Return a context that stops its ``with`` block at a time limit or by a token.
+
+    ``None`` for ``time_limit`` is no limit, and for both, the context does nothing. ``doing`` is the work for
+    messages.
+    """
     if time_limit is None and cancel is None:
         return contextlib.nullcontext()
     return stoppable(None if time_limit is None else parse_seconds(time_limit), cancel, doing)
@@ -217,16 +222,16 @@ def build(
     with _time_limit_context(time_limit, cancel, "building"):
         total = len(units) if isinstance(units, Sized) else 0
         with _progress_counter(on_progress, total) as tell:
-            stated = StatedAmounts()
-            network = units if isinstance(units, Network) else _build_network(units, stated, tell)
+            stated_amounts = StatedAmounts()
+            network = units if isinstance(units, Network) else _build_network(units, stated_amounts, tell)
         making_units = [unit for unit, outputs in enumerate(network.outputs) if outputs]
         last_maker = {making_units[-1]: Source("the units", making_units[-1] + 1)} if making_units else {}
         assumed_goals = tuple(entry for entry in last_goals(network, last_maker)) if goals is None else ()
         starting = is_starting(kitchen)
-        at_hand = starting_kitchen(network).nodes if starting else frozenset[int]()
-        data = Data(network, at_hand, (), assumed_goals, None, frozenset(utensils), (), 0, None, starting)
+        kitchen_ids = starting_kitchen(network).nodes if starting else frozenset[int]()
+        data = Data(network, kitchen_ids, (), assumed_goals, None, frozenset(utensils), (), 0, None, starting)
         data = data._replace(
-            goals_from=LAST if goals is None else "", amounts=stated.amounts_by_unit(network)
+            goals_from=LAST if goals is None else "", amounts=stated_amounts.amounts_by_unit(network)
         )
         dataset = (
             Dataset.of(data)
@@ -251,11 +256,11 @@ def build(
 def _build_network(
     units: Iterable[PlainUnit], amounts: StatedAmounts, tell: Callable[[int], None]
 ) -> Network:
-    """Build a network of units as callers write them; the place of a unit is its number, from 1.
+    """Build a network of units as callers write them; the source of a unit has its number, from 1.
 
     A node that a unit lists several times is taken or made in as many copies, which are added to ``amounts``.
-    ``tell`` is called now and then with the number of units added since the last call. Raises
-    :class:`UserError` for what is no unit.
+    ``tell`` is called after each 100 units and at the end, with the number of units since the last call.
+    Raises :class:`UserError` for what is no unit.
     """
     builder, number, reported = NetworkBuilder(), 0, 0
     if isinstance(units, str | Mapping) or not isinstance(units, Iterable):
@@ -288,9 +293,10 @@ def _build_network(
 
 
 def _parse_nodes(names: object, number: int) -> Iterator[ObjectNode]:
-    """Yield the inputs or the outputs of a unit as object nodes; ``number`` names the unit in errors.
+    """Yield the inputs or the outputs of a unit as object nodes, from one name or several.
 
-    Raises :class:`UserError` for a name that is no valid notation.
+    Names are in one-line notation, or nodes already. ``number`` names the unit in errors. Raises
+    :class:`UserError` for a name that is no valid notation.
     """
     node_names = [names] if isinstance(names, str | ObjectNode) else names
     if not isinstance(node_names, Iterable):
@@ -342,7 +348,8 @@ class Foon:
         """Return the data that a problem was made from, with the kitchen of the problem.
 
         Parameters:
-            problem: The problem; for one made by hand, its parts are the data.
+            problem: The problem. If it was made by hand, its network, kitchen, rates, prices and measures are
+                the data, without goals.
         """
         if isinstance(problem.origin, Dataset):
             return cls(problem.origin.with_kitchen_of(problem), "a problem")
@@ -353,9 +360,9 @@ class Foon:
         return cls(Dataset.of(data).with_measures(problem.measures), "a problem")
 
     def close(self) -> None:
-        """Close the store, also for data varied from these; data that were read whole stay.
+        """Close the store, also for data varied from these; do nothing for data in memory.
 
-        To read more of a closed store raises :class:`UserError`.
+        What was read stays. To read more of a closed store raises :class:`UserError`.
         """
         self._dataset.close()
 
@@ -391,11 +398,12 @@ class Foon:
                 Without it, the amounts of the goals file count.
 
         Raises:
-            UserError: for a name that means no object node or several, with candidates; or for another rule.
+            UserError: for a name that means no object node or several, with candidates; for an unknown
+                container rule or word of ``items``; and for amounts that do not fit the goals.
         """
         ids = self._dataset.python_goal_ids(goals)
-        of_goals = [amounts] if isinstance(amounts, int) else amounts
-        used_up = items_for(self._dataset, ids, of_goals, items, stock, stays)
+        amounts_of_goals = [amounts] if isinstance(amounts, int) else amounts
+        used_up = items_for(self._dataset, ids, amounts_of_goals, items, stock, stays)
         return self._dataset.nearby(ids, containers, used_up)
 
     @typed
@@ -429,7 +437,7 @@ class Foon:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """The assumptions made while reading, with files and lines."""
+        """The assumptions made while reading, with files and lines, also that no kitchen was given."""
         advice = () if self._dataset.has_kitchen else (_NO_KITCHEN,)
         return (*self._dataset.remarks, *advice)
 
@@ -451,7 +459,7 @@ class Foon:
 
     @property
     def goals(self) -> tuple[ObjectNode, ...]:
-        """The object nodes of the goals file.
+        """The object nodes of the goals file; if there is no file, the goals that were assumed.
 
         Raises:
             UserError: if an entry matches no object node.
@@ -479,7 +487,7 @@ class Foon:
 
     @typed
     def nodes(self, label: str) -> tuple[ObjectNode, ...]:
-        """Return the object nodes that have a label.
+        """Return the object nodes that have a label; empty if there are none.
 
         Parameters:
             label: The label. Of a store, only about the first dozen nodes are returned.
@@ -489,7 +497,7 @@ class Foon:
 
     @property
     def dataset(self) -> Dataset:
-        """The dataset, for lower modules."""
+        """The dataset behind this value, for other modules of foon-asp."""
         return self._dataset
 
     def __repr__(self) -> str:

@@ -9,8 +9,8 @@ from contextlib import contextmanager
 def without_garbage_collection() -> Iterator[None]:
     """Disable garbage collection in a ``with`` block, which should create little cyclic garbage.
 
-    If the block made very many objects, they are moved to the oldest generation. Otherwise the next
-    collection would traverse them, which takes seconds.
+    If it was disabled before, it stays so. If the block made more than a million objects, they are moved to
+    the oldest generation. Otherwise the next collection would traverse them, which takes seconds.
     """
     collecting = gc.isenabled()
     gc.disable()

@@ -18,25 +18,25 @@ def _folder_with_file(name: str, expected_file: str) -> Path:
 
 
 def encodings_folder() -> Path:
-    """Return the folder of the answer-set encodings."""
+    """Return the path of the folder of the answer-set encodings."""
     return _folder_with_file("encodings", "task_tree.lp")
 
 
 def published_table() -> Path:
-    """Return the JSON file with the published figures of searches."""
+    """Return the path of the JSON file with the published figures of searches."""
     return _folder_with_file("data", "published/table1.json") / "published" / "table1.json"
 
 
 def starter_recipe() -> Path:
-    """Return the folder of the example recipe for a new data folder, with its success rates."""
+    """Return the path of the folder with an example recipe for a new data folder, and success rates."""
     return _folder_with_file("data", "starter/FOON.txt") / "starter"
 
 
 def bundled_vocabulary() -> Path:
-    """Return the file of the names that lint knows."""
+    """Return the path of the file of the names that lint knows."""
     return _folder_with_file("data", "vocabulary.txt") / "vocabulary.txt"
 
 
 def bundled_kitchen() -> Path:
-    """Return the folder of the bundled universal FOON and its kitchen."""
+    """Return the path of the folder of the bundled universal FOON and its kitchen."""
     return _folder_with_file("data", "kitchen/FOON.txt") / "kitchen"

@@ -163,7 +163,7 @@ class _Command:
 
         They are the listed goals if the command names data that list several. Otherwise, they are assumed.
         """
-        has_listed_goals = self.names_data and len(self.dataset.listed) > 1
+        has_listed_goals = self.names_data and len(self.dataset.goal_entries) > 1
         return self.dataset.listed_goals() if has_listed_goals else self.dataset.assumed_goals()
 
     @property

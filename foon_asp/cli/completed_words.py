@@ -45,7 +45,7 @@ def _complete_goal(context: click.Context, prefix: str) -> Iterable[str]:
     """
     dataset = _read_dataset(context)
     names = dataset.names
-    entries = _words_with_prefix(entry_names(dataset.listed, names), prefix)
+    entries = _words_with_prefix(entry_names(dataset.goal_entries, names), prefix)
     return chain(entries, (str(names.node(o)) for o in nodes_beginning(prefix, names, MAX_COMPLETIONS)))
 
 

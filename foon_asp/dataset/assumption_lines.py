@@ -9,33 +9,36 @@ from foon_asp.text.assumed_goals import MARKED
 
 
 def kitchen_lines(dataset: Dataset, problems: Iterable[Problem], verbose: bool) -> Iterator[str]:
-    """Yield a line on the starting kitchen, with the number of its items that the problems can use.
+    """Yield a line on the assumed starting kitchen, with the number of its items that problems can use.
 
-    The line names up to six of the items that some unit makes. ``verbose`` adds a line for each item.
+    The line also names the first six of these items that some unit makes, and how many more there are. With
+    ``verbose``, a line for each of the items follows.
     """
-    used = {
+    used_items = {
         problem.network.object_number(o): problem.network.objects[o]
         for problem in problems
         for o in kitchen_needed(problem)
     }
-    made_too = set(dataset.made_by_units(used))
-    count = f"{counted(len(used), 'item')} used" + ("" if verbose or not used else "; -v lists them")
+    made_too = set(dataset.made_by_units(used_items))
+    count = f"{counted(len(used_items), 'item')} used" + (
+        "" if verbose or not used_items else "; -v lists them"
+    )
     line = f"No kitchen given: assuming what the recipe does not make is available ({count})"
     if made_too:
-        first_items = [str(used[number]) for number in sorted(made_too)[:6]]
+        first_items = [str(used_items[number]) for number in sorted(made_too)[:6]]
         if len(made_too) > 6:
             first_items.append(f"{len(made_too) - 6} more")
         line += f", and of what a unit makes too: {', '.join(first_items)}"
     yield line
     if verbose:
-        for number in sorted(used):
-            yield f"  {used[number]}" + ("  (a unit makes it too)" if number in made_too else "")
+        for number in sorted(used_items):
+            yield f"  {used_items[number]}" + ("  (a unit makes it too)" if number in made_too else "")
 
 
 def goal_lines(dataset: Dataset, goals: Sequence[ObjectNode], verbose: bool) -> Iterator[str]:
-    """Yield a line on the goals that were assumed, and on their origin.
+    """Yield a line that ``goals`` were assumed, and on their origin.
 
-    With ``verbose``, a line for each goal follows if there are several.
+    The line names the goal if there is only one. If there are several, ``verbose`` adds a line for each.
     """
     origin = {"": "of the goals file", MARKED: "marked in the files"}.get(dataset.goals_from)
     if len(goals) == 1:

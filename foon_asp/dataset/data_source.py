@@ -29,13 +29,15 @@ if TYPE_CHECKING:  # text does without SQLite
 class DataSource:
     """The source of a dataset: a network in memory; for a store, the subclass :class:`StoreSource`.
 
-    Ids are those of the whole network.
+    All ids are ids in the whole network.
     ``names``: looks up nodes and units.
     ``unit_count``: the number of units.
     ``seconds``: the time that reading took so far.
     ``left_out``: the number of lines that were not understood.
     ``repeated``: the nodes that a unit lists twice.
-    ``kitchen``, ``prices``: those that were imported into a store; ``None`` in memory.
+    ``kitchen``: the ids of the nodes of the kitchen that was imported into a store; ``None`` for a network in
+    memory.
+    ``prices``: the prices that were imported into a store; ``None`` for a network in memory.
     """
 
     kitchen: Collection[int] | None = None
@@ -56,7 +58,7 @@ class DataSource:
 
     @property
     def amounts(self) -> DataAmounts:
-        """The numbers of copies that units take and make of object nodes."""
+        """The numbers of copies that units take and make of object nodes, where these are not 1."""
         return self._amounts
 
     @property
@@ -66,7 +68,7 @@ class DataSource:
 
     @property
     def starting_kitchen(self) -> StartingKitchen[Any]:
-        """The starting kitchen."""
+        """The starting kitchen of the whole network, also if another kitchen was given."""
         return starting_kitchen(self._network)
 
     @property
@@ -75,9 +77,9 @@ class DataSource:
         return self._network.different_motions
 
     def motion_sources(self) -> Iterable[tuple[str, Source]]:
-        """Return pairs of a motion and the source of a unit with this motion.
+        """Return pairs of the motion of a unit and the source of this unit.
 
-        The first source of each motion is among them.
+        A motion may be repeated. The first unit of each motion is among the units.
         """
         return first_sources(self._network)
 
@@ -104,10 +106,14 @@ class DataSource:
         available: Container[int],
         max_units: int | None,
     ) -> "Cone | None":
-        """Return the cone of goals: all units that the goals can need; ``None`` for a network in memory.
+        """Return the cone of goals: all units that the goals can need.
 
-        ``max_units`` limits the cone to about this number of units, those near the goals; ``None`` sets no
-        limit. The goals and the ``available`` nodes are ids.
+        Return ``None`` for a network in memory.
+
+        ``goals``, ``available``: ids of object nodes. Units that make available nodes are not needed.
+        ``containers``, ``utensils``: the container rule, and the labels that it is about.
+        ``max_units``: about how many units the cone has at most, those nearest to the goals;
+        ``None`` for no limit.
         """
         return None
 
@@ -120,36 +126,37 @@ class DataSource:
     ) -> "UnitDistances | None":
         """Return the distance of each unit: a lower bound on the cost of any tree with the unit.
 
-        Costs are by ``objective``, and the nodes of ``kitchen`` are available, by id. Inputs whose labels are
-        ``utensils`` are ignored. Returns ``None`` for a network in memory.
+        Return ``None`` for a network in memory. The nodes of ``kitchen``, by id, are available. Inputs whose
+        labels are ``utensils`` cost nothing. A unit costs 1, or if ``objective`` is ``success``, minus the
+        scaled logarithm of its rate; see :class:`UnitDistances`.
         """
         return None
 
     def checked_digests(self) -> dict[str, str]:
-        """Compute the digests that a store states, and return them; empty without a store.
+        """Compute the digests that a store states, and return them by name; empty without a store.
 
-        Raises :class:`UserError` if a stated digest is wrong.
+        Raises :class:`UserError` if a stated digest is not the one that is computed.
         """
         return {}
 
     def unit_prices(self, network: Network, from_file: bool) -> Mapping[FunctionalUnit, Fraction] | None:
-        """Return the prices that a store has for single units of a network; ``None`` if it has none.
+        """Return the prices that a store has for single units of ``network``; ``None`` if there are none.
 
-        If ``from_file``, the imported file of prices takes precedence over the prices that networks state.
-        Returns ``None`` for a network in memory, too.
+        With ``from_file``, prices of the imported file take precedence over the prices that the imported
+        networks state. Otherwise, only the latter are returned.
         """
         return None
 
     def unpriced(self, prices: DataPrices) -> Sequence[Unpriced]:
-        """Return the number of units without a price, for each motion that has any."""
+        """Return, for each motion with unpriced units, their number and the source of the first one."""
         network = self._network
         unit_prices = UnitPrices(prices.motions or {}, prices.units).of_units(network)
         unpriced = (unit for unit, price in enumerate(unit_prices) if price is None)
         return count_unpriced((network.motions[unit], network.sources[unit]) for unit in unpriced)
 
     def kitchen_items(self) -> tuple[ListedObject, ...]:
-        """Return the entries of the kitchen that was imported; empty without a store."""
+        """Return the entries of the kitchen file that was imported into a store; empty without a store."""
         return ()
 
     def close(self) -> None:
-        """Close the store, if the source is one."""
+        """Close the store; do nothing for a network in memory."""

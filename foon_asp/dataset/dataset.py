@@ -61,8 +61,12 @@ def pose_problem(
 ) -> Problem:
     """Return the problem of goals over ``data``, which is all or a part of the data of ``origin``.
 
-    ``goals`` are ids in the network of ``data``. ``items`` says how items are used up; ``None`` if items
-    last. If a motion has no success rate, the problem has no rates.
+    ``goals``: ids in the network of ``data``.
+    ``containers``: the name of the container rule.
+    ``items``: how items are used up; ``None`` if they last.
+
+    The user measures are those of ``origin``. If one of its motions has no success rate, the problem has no
+    rates.
 
     Raises :class:`UserError` for an unknown container rule, and for contradictory amounts if items are used
     up.
@@ -91,23 +95,30 @@ def pose_problem(
 class Dataset:
     """Data that was read from text, or an open store, of which each problem reads only its part.
 
-    ``source``: the network in memory, or the store. Ids are those of the whole network.
-    ``listed``: the entries of the goals file, or the assumed goals.
+    ``source``: the network in memory, or the store. All ids are ids in the whole network.
+    ``kitchen``: the available nodes.
+    ``goal_entries``: the entries of the goals file, or the assumed goals.
     ``rates``: the success rates of motions; ``None`` without a file of rates.
     ``utensils``: the labels of utensils for the container rule ``implied``.
+    ``prices``: the prices of units, except those in a store.
     ``kitchen_items``: the entries of the kitchen file; ``None`` if these are in the store.
     ``starting``: true if the kitchen is the starting kitchen, with or without changes.
-    ``goals_from``: the origin of the assumed goals; empty if a file lists goals.
-    ``remarks``: the assumptions made while reading, in words; ``brief`` is a summary of them.
+    ``goals_from``: the origin of the assumed goals, as in :class:`Data`; empty if a file lists goals.
+    ``remarks``: the assumptions made while reading, in words.
+    ``brief``: a summary of the remarks.
     ``has_kitchen``: true if a kitchen was given, even an empty one.
     ``measures``: the user measures, by name.
     ``stand_ins``: the table of stand-ins; ``None`` where nothing may stand in.
     ``stock``: the amounts that the kitchen states; other items never run out.
+
+    A dataset never changes: the methods ``with_...`` and ``vary`` return another one. It has no remarks if
+    kitchen, goals, rates or prices are changed. Its ``has_kitchen`` is true if kitchen, rates or prices are
+    changed. :meth:`with_kitchen_for` is an exception from both.
     """
 
     source: DataSource
     kitchen: Kitchen
-    listed: Sequence[ListedObject] = ()
+    goal_entries: Sequence[ListedObject] = ()
     rates: Mapping[str, Fraction] | None = None
     utensils: frozenset[str] = frozenset()
     prices: DataPrices = NO_PRICES
@@ -163,13 +174,16 @@ class Dataset:
 
     @cached_property
     def data(self) -> Data:
-        """The whole data; of a store, everything is read at the first access."""
+        """The whole data, without warnings; of a store, everything is read at the first access."""
         network = self.source.whole_network()
         items = self.source.kitchen_items() if self.kitchen_items is None else self.kitchen_items
         return self._data_with(network, self.kitchen.ids)._replace(kitchen_items=items)
 
     def _data_of_network(self, network: Network) -> Data:
-        """Return the data of this dataset for the whole network or for a part of it."""
+        """Return the data of this dataset over ``network``, which is a part of the network or all of it.
+
+        The kitchen is matched to the ids of ``network``.
+        """
         if network is self.names:
             return self.data
         kitchen = (local_id for local_id, o in enumerate(network.object_numbers) if o in self.kitchen)
@@ -181,7 +195,7 @@ class Dataset:
             network,
             kitchen,
             (),
-            tuple(self.listed),
+            tuple(self.goal_entries),
             None if self.rates is None else dict(self.rates),
             self.utensils,
             (),
@@ -194,7 +208,10 @@ class Dataset:
         )
 
     def _unit_prices(self, network: Network) -> UnitPrices | None:
-        """Return the prices of the units of a network, with those in a store; ``None`` if there are none."""
+        """Return the prices of the units of a network, also those in a store; ``None`` if there are none.
+
+        Prices of single units in memory take precedence over those in the store.
+        """
         motions, units, from_file = self.prices
         stored = self.source.unit_prices(network, from_file)
         if motions is None and not units and stored is None:
@@ -221,14 +238,15 @@ class Dataset:
         return o in self.kitchen
 
     def made_by_units(self, objects: Iterable[int]) -> list[int]:
-        """Return those of the ``objects``, by id, that a unit makes and does not need."""
+        """Return those of the ``objects``, by id, that some unit makes without needing them."""
         return [o for o in objects if self.source.starting_kitchen.makers(o)]
 
     def with_kitchen_for(self, goals: Iterable[int]) -> "Dataset":
-        """Return the dataset with the kitchen that it has for some goals, by id.
+        """Return the dataset with the kitchen that it has in a question about these goals, by id.
 
         A starting kitchen loses goals that units make, and may gain other nodes; see
-        :meth:`StartingKitchen.changes_for_goals`. Any other kitchen stays.
+        :meth:`StartingKitchen.changes_for_goals`. Nodes that were removed from it stay removed. Any other
+        kitchen stays as it is.
         """
         if not self.starting:
             return self
@@ -243,51 +261,55 @@ class Dataset:
     def command_goal_ids(self, names: Sequence[str | ObjectNode]) -> tuple[int, ...]:
         """Return the ids of the goals that a command names, each once.
 
-        Without names, return all assumed goals, or the only goal of the goals file. Raises :class:`UserError`
-        if the file has several goals, or if there is no goal to assume.
+        Without names, return all assumed goals, or the node of the only entry of the goals file. Raises
+        :class:`UserError` for a name that means no object node or several. Without names, it is raised if the
+        file has several entries, or if there is no goal to assume.
         """
-        if not names and self.goals_from and not self.listed:
+        if not names and self.goals_from and not self.goal_entries:
             raise UserError(
                 "no functional unit makes anything, so there is no goal: expected a recipe or a network"
             )
         if not names and self.goals_from:
             return tuple(dict.fromkeys(self.goal_ids(())))
-        if not names and len(self.listed) == 1:
-            return (node_of_entry(self.listed[0], self.names),)
+        if not names and len(self.goal_entries) == 1:
+            return (node_of_entry(self.goal_entries[0], self.names),)
         if not names:
-            listed = "\n".join(
-                f"  --goal {shlex.quote(name)}" for name in entry_names(self.listed, self.names)
+            options = "\n".join(
+                f"  --goal {shlex.quote(name)}" for name in entry_names(self.goal_entries, self.names)
             )
-            raise UserError("name a goal with --goal" + (f"; the goals file has\n{listed}" if listed else ""))
+            raise UserError(
+                "name a goal with --goal" + (f"; the goals file has\n{options}" if options else "")
+            )
         return tuple(dict.fromkeys(self.goal_ids(names)))
 
     def assumed_goals(self) -> list[ObjectNode]:
-        """Return the goals that were assumed because no file lists goals; empty if a file does."""
+        """Return the goals that were assumed because no file lists goals; an empty list if a file does."""
         return self.listed_goals() if self.goals_from else []
 
     def listed_goals(self) -> list[ObjectNode]:
-        """Return the goals of the goals file, or else those that were assumed, each once."""
+        """Return the goals of the goals file, or if there is no file, those that were assumed, each once."""
         return [self.names.node(o) for o in dict.fromkeys(self.goal_ids(()))]
 
     def goal_ids(self, names: Sequence[str | ObjectNode]) -> list[int]:
         """Return the id of the goal for each name, in order; an id may be repeated.
 
-        Without names, return the ids of all goals of the goals file; if there is no file, of the goals that
-        were assumed.
+        Without names, return the ids of all nodes that match entries of the goals file; if there is no file,
+        of the goals that were assumed. Raises :class:`GoalError` for a name that means no object node or
+        several, and for an entry that matches none.
         """
         if names:
             return [
                 node_id(self, name, "goal")
                 if isinstance(name, ObjectNode)
-                else find_goal(name, self.names, self.listed)
+                else find_goal(name, self.names, self.goal_entries)
                 for name in names
             ]
-        return [node for entry in self.listed for node in nodes_of_entry(entry, self.names)]
+        return [node for entry in self.goal_entries for node in nodes_of_entry(entry, self.names)]
 
     def with_kitchen(self, items: Sequence[ListedObject]) -> "Dataset":
         """Return the same data with another kitchen: the nodes that match entries of a kitchen file.
 
-        The amounts in these entries become the stock.
+        The amounts in these entries become the stock. Entries that match no node are ignored.
         """
         names = self.names
         patterns = [pattern_at_level(item.pattern, names.level) for item in items]
@@ -300,14 +322,14 @@ class Dataset:
         """The numbers of copies of goals that the goals file states, by the id of the goal."""
         return {
             o: entry.amount
-            for entry in self.listed
+            for entry in self.goal_entries
             if entry.amount is not None
             for o in self.names.find(entry.pattern)
         }
 
     def with_goals(self, goals: Sequence[ListedObject]) -> "Dataset":
         """Return the same data with these entries as its goals file; no goals are assumed then."""
-        return self._with_fields(listed=tuple(goals), goals_from="", has_kitchen=self.has_kitchen)
+        return self._with_fields(goal_entries=tuple(goals), goals_from="", has_kitchen=self.has_kitchen)
 
     def with_starting_kitchen(self) -> "Dataset":
         """Return the same data with the starting kitchen."""
@@ -317,35 +339,37 @@ class Dataset:
     def _with_fields(self, **changes: Any) -> "Dataset":
         """Return a copy with some fields changed.
 
-        Unless they are changed too, the remarks on assumptions are dropped, and the kitchen counts as given.
+        Unless ``changes`` say otherwise, the copy has no remarks, and its kitchen counts as given
+        (``has_kitchen``).
         """
         return replace(self, **{"remarks": (), "brief": (), "has_kitchen": True, **changes})
 
     def with_remarks(
         self, warnings: Iterable[str], brief: Iterable[str], remarks: Sequence[str], has_kitchen: bool
     ) -> "Dataset":
-        """Return the same data with ``warnings`` and ``remarks`` as its remarks.
+        """Return the same data with other remarks: ``warnings``, then ``remarks``.
 
-        ``brief`` is a summary of the warnings, which takes their place in the brief remarks.
+        Its :attr:`brief` remarks are ``brief``, a summary of the warnings, then ``remarks``. ``has_kitchen``
+        says whether a kitchen was given.
         """
         all_remarks, brief_remarks = (*warnings, *remarks), (*brief, *remarks)
         return replace(self, remarks=all_remarks, brief=brief_remarks, has_kitchen=has_kitchen)
 
     def with_measures(self, measures: Mapping[str, Measure]) -> "Dataset":
-        """Return the same data with other user measures."""
+        """Return the same data with these user measures, by name, instead of its own."""
         return replace(self, measures=measures)
 
     def with_stand_in_table(self, table: StandInTable | None) -> "Dataset":
-        """Return the same data with stand-ins by a table; ``None`` allows no stand-ins.
+        """Return the same data with stand-ins by a table; without stand-ins if ``table`` is ``None``.
 
-        With a table, assumed goals that are not of the first file are dropped: the other files help to make
-        the goals of the first one.
+        With a table, assumed goals that are not of the first file are dropped, unless this leaves none. The
+        other files are there to help make the goals of the first one.
         """
-        goals = self.listed
+        goals = self.goal_entries
         if table is not None and self.goals_from and len(goals) > 1:
             copies = next(iter(self.whole_network.sources), ())
             goals = [goal for goal in goals if copies and goal.source.file == copies[0].file] or goals
-        return replace(self, stand_ins=table, listed=goals)
+        return replace(self, stand_ins=table, goal_entries=goals)
 
     def with_kitchen_changes(
         self,
@@ -355,8 +379,9 @@ class Dataset:
     ) -> "Dataset":
         """Return the same data with object nodes, by id, added to the kitchen and removed from it.
 
-        Before that, the nodes in ``replacement`` take the place of the whole kitchen; ``None`` keeps it.
-        Added nodes never run out.
+        If there is a ``replacement``, its nodes first take the place of the whole kitchen, and no item has a
+        stock. With ``None``, the kitchen is kept, with the stock of all items that are not added. Added nodes
+        never run out.
         """
         if replacement is not None:
             kitchen = Kitchen(replacement, added, removed)
@@ -368,9 +393,10 @@ class Dataset:
     def with_rates_and_prices(
         self, rates: Mapping[str, Number] | None, unit_prices: UnitPricesNamed | None
     ) -> "Dataset":
-        """Return the same data with other success rates and prices for some motions and units.
+        """Return the same data with some success rates and some prices replaced or added.
 
-        ``None`` changes nothing.
+        ``rates`` are by motion, ``unit_prices`` by motion or unit. ``None`` for one of them keeps all. Raises
+        :class:`UserError` as :func:`changed_rates` and :func:`changed_prices` do.
         """
         if rates is None and unit_prices is None:
             return self
@@ -384,7 +410,9 @@ class Dataset:
     def vary(self, changes: Changes) -> "Dataset":
         """Return the same data with changes, as :meth:`foon_asp.Foon.vary` does.
 
-        Entries of a kitchen file that match no object node cause a warning.
+        The rates, prices and measures are changed first, then the kitchen is replaced, then items are added,
+        and last removed. Entries of a kitchen file that match no object node cause a warning. Raises
+        :class:`UserError` for an unknown name.
         """
         kitchen, adding, without, rates, unit_prices, measures = changes
         dataset = self.with_rates_and_prices(rates, unit_prices)
@@ -419,24 +447,28 @@ class Dataset:
     ) -> Problem:
         """Return a variation of a problem over changed data, as :meth:`Problem.vary` describes.
 
-        ``None`` keeps the goals or the container rule of the problem.
+        ``None`` keeps the goals or the container rule of the problem. Items are used up as in the problem;
+        with another kitchen, the stock is that of the other kitchen.
         """
         dataset = self.with_kitchen_of(problem).vary(changes)
         ids = _whole_goal_ids(problem) if goals is None else dataset.python_goal_ids(goals)
         items = problem.items
         if items is not None and changes.kitchen is not None:
             items = replace(items, stock=dict(dataset.stock))
-        posed = dataset.nearby(ids, containers or problem.containers, items)
-        return _with_own_rates(posed, problem)
+        varied = dataset.nearby(ids, containers or problem.containers, items)
+        return _with_own_rates(varied, problem)
 
     def extend_to_whole(self, problem: Problem) -> Problem:
         """Return the same problem over the whole network, with the units that no goal needs."""
         dataset = self.with_kitchen_of(problem)
-        posed = dataset.problem(_whole_goal_ids(problem), problem.containers, True, problem.items)
-        return _with_own_rates(posed, problem)
+        extended = dataset.problem(_whole_goal_ids(problem), problem.containers, True, problem.items)
+        return _with_own_rates(extended, problem)
 
     def extend_to_units(self, problem: Problem, units: Iterable[FunctionalUnit]) -> Problem:
-        """Return the same problem over a part of the network that has its goals and the given units."""
+        """Return the same problem over a part of the network that has its goals and at least the given units.
+
+        Of a network in memory, the part is the whole network.
+        """
         dataset = self.with_kitchen_of(problem)
         data, goals = dataset.data_part(_whole_goal_ids(problem), tree=units)
         return _with_own_rates(pose_problem(data, goals, problem.containers, dataset, problem.items), problem)
@@ -444,9 +476,15 @@ class Dataset:
     def subject(self, everything: bool = True, goals: Iterable[int] = ()) -> "Subject":
         """Return what a certificate is about: network, kitchen and prices, with the digests of the store.
 
-        All data are read if ``everything`` is true, for a starting kitchen, for prices that are not those of
-        the store, and for a store without digests. Otherwise, the store is read on access and its digests are
-        trusted. ``goals`` are the ids for which a starting kitchen is computed.
+        All data are read, and the digests are checked,
+        - if ``everything`` is true,
+        - for a starting kitchen,
+        - for prices that are not those of the store, and
+        - for a store without digests.
+        Otherwise, the store is read on access and its digests are trusted.
+
+        Digests of a kitchen or of prices that are not those of the store are left out. A starting kitchen is
+        the one for ``goals``, by id. If some motion has no success rate, the subject has no rates.
 
         Raises :class:`UserError` if all data are read and do not have a digest that the store states.
         """
@@ -454,18 +492,18 @@ class Dataset:
 
         source, with_goal_kitchen = self.source, self.with_kitchen_for(goals)
         rates = None if self.unrated else self.rates
-        own_prices = self.prices == source.prices
-        everything = everything or self.starting or not own_prices or not source.digests
-        stated = dict(source.checked_digests() if everything else source.digests)
+        has_stored_prices = self.prices == source.prices
+        everything = everything or self.starting or not has_stored_prices or not source.digests
+        digests = dict(source.checked_digests() if everything else source.digests)
         if not self.kitchen.is_exactly(source.kitchen):
-            stated.pop("kitchen", None)
-        if not own_prices:
-            stated.pop("prices", None)
+            digests.pop("kitchen", None)
+        if not has_stored_prices:
+            digests.pop("prices", None)
         if everything:
             data = self.data
             kitchen, prices, trusted = with_goal_kitchen.kitchen.ids, data.unit_prices, ()
             return Subject(
-                data.network, kitchen, rates, self.utensils, prices, stated, trusted, data.amounts.units
+                data.network, kitchen, rates, self.utensils, prices, digests, trusted, data.amounts.units
             )
         network = source.network_read_on_access()
         return Subject(
@@ -474,27 +512,27 @@ class Dataset:
             rates,
             self.utensils,
             None,
-            stated,
-            tuple(sorted(stated)),
+            digests,
+            tuple(sorted(digests)),
             source.amounts.units,
         )
 
     def subject_with_stand_ins(
         self, goals: Sequence[int], containers: str, everything: bool, steps: Sequence[int] = ()
     ) -> "Subject":
-        """Return what a certificate is about that has stand-ins: the network with stand-ins, and the kitchen.
+        """Return the network with stand-ins and the kitchen that a certificate is about.
 
-        Without ``steps``, the network has the stand-ins for the goals; with ``everything``, also those that
-        no goal needs. With ``steps``, the ids of the units of a tree, it has the stand-ins for the repair of
-        this tree.
+        The network has these stand-ins:
+        - without ``steps``, those for the goals, and with ``everything``, also those that no goal needs;
+        - with ``steps``, the ids of the units of a tree, those for the repair of this tree.
         """
         from foon_asp.proof.certificate_subject import Subject  # noqa: PLC0415 (few answers need it)
 
         if steps and self.stand_ins is not None:
             from foon_asp.standins.repair import Repair  # noqa: PLC0415 (few questions have stand-ins)
 
-            posed = pose_problem(self.with_kitchen_for(goals).data, goals, containers, self)
-            problem = Repair.over(posed, tuple(steps), self.stand_ins).shown
+            original = pose_problem(self.with_kitchen_for(goals).data, goals, containers, self)
+            problem = Repair.over(original, tuple(steps), self.stand_ins).shown
         else:
             problem = self.problem(goals, containers, everything)
         values = problem.kitchen, problem.rates, problem.utensils, problem.unit_prices
@@ -503,8 +541,9 @@ class Dataset:
     def python_goal_ids(self, names: Names) -> tuple[int, ...]:
         """Return the ids of the goals that a Python caller names, each once.
 
-        Without a name, return the only goal of the goals file, or else the only one that was assumed. Raises
-        :class:`UserError` if there are several or none.
+        Without a name, return the node of the only entry of the goals file; if there is no file, the only
+        goal that was assumed. Raises :class:`UserError` for a name that means no object node or several.
+        Without a name, it is raised if there are several goals or none.
         """
         named = tuple(dict.fromkeys(node_ids(self, names, "goal")))
         if named:
@@ -515,13 +554,17 @@ class Dataset:
                 return tuple(assumed)
             choices = ", ".join(repr(str(self.names.node(o))) for o in assumed)
             raise UserError(f"name a goal; no file lists goals, and taken for them are {choices}")
-        if len(self.listed) == 1:
-            return (node_of_entry(self.listed[0], self.names),)
-        choices = ", ".join(map(repr, entry_names(self.listed, self.names)))
+        if len(self.goal_entries) == 1:
+            return (node_of_entry(self.goal_entries[0], self.names),)
+        choices = ", ".join(map(repr, entry_names(self.goal_entries, self.names)))
         raise UserError("name a goal" + (f"; the goals file has {choices}" if choices else ""))
 
     def with_kitchen_of(self, problem: Problem) -> "Dataset":
-        """Return the same data with the kitchen of ``problem``, which is a problem of this dataset."""
+        """Return the same data with the kitchen of ``problem``, a problem that was made from this dataset.
+
+        No more of a store is read. If the problem is about a part of the network, nodes outside it stay as
+        they are.
+        """
         from foon_asp.dataset.nearby import without_reading_more  # noqa: PLC0415 (few answers need it)
 
         added, removed = self.kitchen_changes(without_reading_more(problem), _whole_goal_ids(problem))
@@ -530,9 +573,9 @@ class Dataset:
     def kitchen_changes(
         self, problem: Problem, goals: Iterable[int]
     ) -> tuple[frozenset[int], frozenset[int]]:
-        """Return the nodes that only the problem has available, and those that only the dataset has.
+        """Return the ids of nodes that only the problem has available, and those that only the dataset has.
 
-        The kitchen of the dataset is the one for ``goals``. All ids, also those of ``goals``, are ids of the
+        The kitchen of the dataset is the one for ``goals``. All ids, also those of ``goals``, are ids in the
         whole network. If the problem is about a part of the network, only nodes of this part are compared.
         """
         kitchen, network = self.with_kitchen_for(goals).kitchen, problem.network
@@ -548,7 +591,7 @@ class Dataset:
         return problem_items - own_items, own_items - problem_items
 
     def unpriced(self) -> Sequence[Unpriced]:
-        """Return the number of units without a price, for each motion that has any."""
+        """Return, for each motion with unpriced units, their number and the source of the first one."""
         return self.source.unpriced(self.prices)
 
     def problem(
@@ -558,17 +601,21 @@ class Dataset:
         everything: bool = False,
         items: UsedUp | None = None,
     ) -> Problem:
-        """Return the problem of goals, by id, under the container rule with the name ``containers``.
+        """Return the problem of goals, by id and in this order, under the container rule ``containers``.
 
-        Its network has the units that the goals can need; with ``everything``, all units. ``items`` says how
-        items are used up; ``None`` if items last. The goals keep their order.
+        Of a store, its network has only the units that the goals can need; with ``everything``, all units. Of
+        data in memory, it has all units in any case. If there are stand-ins, they are units of the network,
+        too; with ``everything``, also those that no goal needs.
+
+        ``items`` says how items are used up; ``None`` if items last. Then the goals can also need units that
+        make items of the stock, since these may run out.
         """
         dataset = self.with_kitchen_for(goals)
         if self.stand_ins is not None:
             from foon_asp.standins import with_stand_ins  # noqa: PLC0415 (few questions have stand-ins)
 
-            posed = pose_problem(dataset.data, goals, containers, self, items)
-            return with_stand_ins(posed, self.stand_ins, everything)
+            without_stand_ins = pose_problem(dataset.data, goals, containers, self, items)
+            return with_stand_ins(without_stand_ins, self.stand_ins, everything)
         if everything:
             return pose_problem(dataset.data, goals, containers, self, items)
         # items of the stock may run out, and then have to be made
@@ -581,25 +628,30 @@ class Dataset:
         )
 
     def nearby(
-        self, goals: Sequence[int], containers: str, items: UsedUp | None = None, first: int = 1000
+        self, goals: Sequence[int], containers: str, items: UsedUp | None = None, units_at_first: int = 1000
     ) -> Problem:
-        """Return the problem of goals; of a store, only about ``first`` units near the goals are read now.
+        """Return the problem of goals; of a store, only about ``units_at_first`` units are read now.
 
-        Other units are read when the fields of the problem are accessed. If no kitchen was given, if items
-        are used up, or if there are stand-ins, all units that the goals can need are read now.
+        These are near the goals. All other units that the goals can need are read when a field of the problem
+        is accessed; see :class:`NearbyProblem`. They are all read now if no kitchen was given, if items are
+        used up, or if there are stand-ins. Of data in memory, the problem is that of :meth:`problem`.
         """
         cone = None
         if items is None and self.has_kitchen and self.stand_ins is None:
             kitchen = self.with_kitchen_for(goals).kitchen
-            cone = self.source.cone(goals, container_rule(containers), self.utensils, kitchen, first)
+            cone = self.source.cone(goals, container_rule(containers), self.utensils, kitchen, units_at_first)
         if cone is None:
             return self.problem(goals, containers, items=items)
         from foon_asp.dataset.nearby import Nearby, NearbyProblem  # noqa: PLC0415 (text does without)
 
-        return NearbyProblem.of(Nearby(self, cone, containers), first)
+        return NearbyProblem.of(Nearby(self, cone, containers), units_at_first)
 
     def problem_of_units(self, units: Iterable[int], goals: Sequence[int], containers: str) -> Problem:
-        """Return the problem of goals over a part of the network that has these units; both are by id."""
+        """Return the problem of goals over a part of the network that has at least these units.
+
+        Goals and units are by id. Items last in the problem. Of a network in memory, the part is the whole
+        network.
+        """
         network = self.source.network_part(units, goals)
         return pose_problem(
             self.with_kitchen_for(goals)._data_of_network(network),
@@ -609,9 +661,11 @@ class Dataset:
         )
 
     def unit_distances(self, containers: str, objective: Objective) -> "UnitDistances | None":
-        """Return the distance of each unit of a store: a lower bound on the cost of any tree with it.
+        """Return the distance of each unit of a store: a lower bound on the cost of any tree with the unit.
 
-        Returns ``None`` if the data are text, and for a starting kitchen.
+        Return ``None`` if the data are in memory, and for a starting kitchen. ``containers`` is the name of
+        the container rule; under ``implied``, utensils cost nothing. See :meth:`DataSource.unit_distances`
+        for ``objective``.
         """
         if self.starting:
             return None
@@ -623,10 +677,11 @@ class Dataset:
     def data_part(
         self, goals: Sequence[int], units: Iterable[int] = (), tree: Iterable[FunctionalUnit] = ()
     ) -> tuple[Data, tuple[int, ...]]:
-        """Return a part of the data, and the ids that the goals have in its network.
+        """Return a part of the data, and the ids that the goals have in the network of the part.
 
-        The part has at least the ``goals`` and ``units``, both by id, and the units and nodes of ``tree``.
-        Raises :class:`UserError` for an id that no unit has.
+        The part has at least the ``goals`` and ``units``, both by id, and the units and nodes of ``tree``
+        that the network has. Its kitchen is the one for the goals. Raises :class:`UserError` for an id in
+        ``units`` that no unit has.
         """
         units, names = list(units), self.names
         for unit in units:
@@ -634,7 +689,7 @@ class Dataset:
                 count = self.source.unit_count
                 raise UserError(f"there is no unit {unit}: the network has units 0 to {count - 1}")
         tree = list(tree)
-        tree_ids = [number for unit in tree if (number := names.unit_id(unit)) is not None]
+        tree_ids = [unit_id for unit in tree if (unit_id := names.unit_id(unit)) is not None]
         nodes = {node for unit in tree for node in (*unit.inputs, *unit.outputs)}
         objects = [o for node in nodes if (o := names.object_id(node)) is not None]
         network = self.source.network_part([*units, *tree_ids], [*goals, *objects])
@@ -662,13 +717,15 @@ def _whole_goal_ids(problem: Problem) -> tuple[int, ...]:
     return tuple(problem.network.object_number(goal) for goal in problem.goals)
 
 
-def _with_own_rates(posed: Problem, problem: Problem) -> Problem:
-    """Return ``posed`` with the success rates that ``problem`` has for single units.
+def _with_own_rates(new_problem: Problem, problem: Problem) -> Problem:
+    """Return ``new_problem`` with the success rates that ``problem`` has for single units.
 
-    Units that ``posed`` does not have are left out.
+    Rates of units that ``new_problem`` does not have are left out.
     """
     if not problem.own_rates:
-        return posed
-    numbered = {problem.network.unit_number(unit): rate for unit, rate in problem.own_rates.items()}
-    own_rates = {posed.network.unit_of_number(number): rate for number, rate in numbered.items()}
-    return replace(posed, own_rates={unit: rate for unit, rate in own_rates.items() if unit is not None})
+        return new_problem
+    rates_by_number = {problem.network.unit_number(unit): rate for unit, rate in problem.own_rates.items()}
+    own_rates = {new_problem.network.unit_of_number(number): rate for number, rate in rates_by_number.items()}
+    return replace(
+        new_problem, own_rates={unit: rate for unit, rate in own_rates.items() if unit is not None}
+    )

@@ -28,14 +28,14 @@ def items_for(
     stock: Stock | None,
     stays: Stays | None,
 ) -> UsedUp | None:
-    """Return how items are used up in a question about ``goals``, by id; ``None`` if items last.
+    """Return how items are used up in a question about ``goals``, by id. Return ``None`` if items last.
 
-    ``amounts`` has the number of copies wanted of each goal; if it is empty, the amounts of the goals file
-    count. ``items`` is ``used-up`` or ``lasting``. If it is ``None``, items are used up if there are amounts
-    of the goals, and last otherwise.
+    ``amounts`` has the number of copies wanted of each goal, in the order of the goals. If it is empty, the
+    amounts of the goals file count. ``items`` is ``used-up``, ``lasting`` or ``None``. With ``None``, items
+    are used up if some goal has an amount, and last otherwise.
 
-    Raises :class:`UserError` as :func:`items_of` does, for amounts that do not fit the goals, and for
-    ``amounts`` where items last.
+    Raises :class:`UserError` as :func:`items_of` does, for ``amounts`` that do not fit the goals, and for
+    ``amounts`` together with ``lasting``. Amounts of the goals file are ignored with ``lasting``.
     """
     if not amounts:
         amounts_by_id = dataset.goal_amounts
@@ -53,7 +53,8 @@ def items_for(
 def _amounts_by_goal(dataset: Dataset, goals: Sequence[int], amounts: Sequence[int]) -> dict[ObjectNode, int]:
     """Return the number of copies wanted of each goal; ``amounts`` has them in the order of the goals.
 
-    Raises :class:`UserError` unless there is an amount for each goal, and for an amount out of range.
+    Raises :class:`UserError` if there are more or fewer amounts than goals, or for an amount that is not from
+    1 to :data:`MAX_AMOUNT`.
     """
     if len(amounts) != len(goals):
         numbers = f"{counted(len(amounts), 'amount')} for {counted(len(goals), 'goal')}"
@@ -72,15 +73,19 @@ def items_of(
     stays: Stays | None,
     wanted: Mapping[ObjectNode, int] = MappingProxyType({}),
 ) -> UsedUp | None:
-    """Return how items are used up; ``None`` if they last.
+    """Return how items are used up, or ``None`` if they last.
 
-    ``items`` is ``used-up`` or ``lasting``.
-    Amounts in ``stock`` replace those of the kitchen.
-    ``stays`` says of labels or nodes whether they stay (true) or are used up, whatever the usual rule says.
-    ``wanted`` has the number of copies of each goal.
+    ``items``: ``used-up`` or ``lasting``.
+    ``stock``: numbers of copies of kitchen items, which replace those that the kitchen states.
+    ``stays``: for labels or nodes, whether they stay (true) or are used up, against the usual rule.
+    ``wanted``: the number of copies of each goal.
 
-    Raises :class:`UserError` for another word as ``items``, and for a stock or ``stays`` where items last. It
-    also raises it for stock that the kitchen lacks, for names that the network lacks, and below level 3.
+    Raises :class:`UserError` for
+    - another word as ``items``,
+    - a ``stock`` or ``stays`` where items last,
+    - an item of the stock that the kitchen lacks,
+    - a name that the network lacks,
+    - a network below level 3.
     """
     if items not in ITEMS:
         raise UserError(f"found the items {items!r}, expected one of {', '.join(ITEMS)}")
@@ -91,7 +96,11 @@ def items_of(
         return None
     require_contents(dataset.names.level)
     exceptions = {} if stays is None else _read_exceptions(dataset, stays)
-    copies = {node: n for node, n in dataset.stock.items() if dataset.at_hand(node_id(dataset, node, "item"))}
+    copies = {
+        node: count
+        for node, count in dataset.stock.items()
+        if dataset.at_hand(node_id(dataset, node, "item"))
+    }
     if stock is not None:
         copies |= _read_stock_copies(dataset, stock)
     return UsedUp(exceptions, copies, {node: amount for node, amount in wanted.items() if amount > 1})
@@ -107,7 +116,7 @@ def require_contents(level: int) -> None:
 
 
 def _read_exceptions(dataset: Dataset, stays: Stays) -> dict[str | ObjectNode, bool]:
-    """Return whether items stay when they are used, by label or node.
+    """Return the exceptions from the usual rule: by label or node, true if it stays, false if it is used up.
 
     ``stays`` is the path of a file, or a mapping of names. Raises :class:`UserError` for a name that the
     network lacks.
@@ -117,7 +126,8 @@ def _read_exceptions(dataset: Dataset, stays: Stays) -> dict[str | ObjectNode, b
     else:
         try:
             exceptions = {
-                stated_name(n) if isinstance(n, str) else n: bool(lasts) for n, lasts in stays.items()
+                stated_name(name) if isinstance(name, str) else name: bool(lasts)
+                for name, lasts in stays.items()
             }
         except LineError as error:
             raise UserError(f"what stays: {error}") from None
@@ -130,7 +140,7 @@ def _read_exceptions(dataset: Dataset, stays: Stays) -> dict[str | ObjectNode, b
 
 
 def _read_stock_copies(dataset: Dataset, stock: Stock) -> dict[ObjectNode, int]:
-    """Return the number of copies in the stock by object node.
+    """Return the number of copies in the stock, by object node; it may be 0.
 
     ``stock`` is the path of a file, or a mapping of names. Raises :class:`UserError` for a node that the
     kitchen lacks.

@@ -7,15 +7,17 @@ from functools import cached_property
 class Kitchen(Collection[int]):
     """The available object nodes, by id in the whole network: a ``base`` with nodes added and removed.
 
-    The base of a kitchen in a store is read on access. A node that is both added and removed is not
-    available.
+    A node that is both added and removed is not available. A base in a store is read on access.
     """
 
     def __init__(self, base: Collection[int], added: Iterable[int] = (), removed: Iterable[int] = ()) -> None:
         self._base, self._added, self._removed = base, frozenset(added), frozenset(removed)
 
     def with_changes(self, added: Collection[int], removed: Collection[int]) -> "Kitchen":
-        """Return this kitchen with further nodes added and removed."""
+        """Return this kitchen with further nodes added and removed.
+
+        A node that was removed before can be added again, and a node that was added can be removed.
+        """
         return Kitchen(self, added, removed) if added or removed else self
 
     def is_exactly(self, base: Collection[int] | None) -> bool:

@@ -6,13 +6,18 @@ from foon_asp.text.data_folder import Data, kitchen_nodes
 
 
 def statistics_by_level(data: Data) -> list[Statistics]:
-    """Return the statistics of a network and its kitchen at the levels 1 to 3.
+    """Return the statistics of a network and its kitchen at the levels 1, 2 and 3, in this order.
 
-    A network below level 3 is counted at its own level only.
+    At each level, nodes are merged and the kitchen items are matched again. For a network below level 3,
+    return only its statistics at its own level.
     """
-    whole = data.network
-    networks = [whole] if whole.level < max(LEVELS) else [network_at_level(whole, level) for level in LEVELS]
+    network = data.network
+    networks = (
+        [network] if network.level < max(LEVELS) else [network_at_level(network, level) for level in LEVELS]
+    )
     return [
-        network_statistics(network, None if data.starting else kitchen_nodes(network, data.kitchen_items))
-        for network in networks
+        network_statistics(
+            network_of_level, None if data.starting else kitchen_nodes(network_of_level, data.kitchen_items)
+        )
+        for network_of_level in networks
     ]

@@ -15,37 +15,40 @@ if TYPE_CHECKING:  # plain answers do not need it
 
 
 class UnreadData(Protocol):
-    """The interface of a dataset whose problems may cover a part of its network; ids are of the whole one."""
+    """A dataset whose problems may cover a part of its network; all ids are ids in the whole network."""
 
     def problem(self, goals: Sequence[int], containers: str) -> Problem:
         """Return the problem of goals over all units that they can need."""
 
     def problem_of_units(self, units: Iterable[int], goals: Sequence[int], containers: str) -> Problem:
-        """Return the problem of goals over a part of the network that has these units."""
+        """Return the problem of goals over a part of the network that has at least these units."""
 
-    def nearby(self, goals: Sequence[int], containers: str, items: UsedUp | None, first: int) -> Problem:
-        """Return the problem of goals, after reading about ``first`` units near them."""
+    def nearby(
+        self, goals: Sequence[int], containers: str, items: UsedUp | None, units_at_first: int
+    ) -> Problem:
+        """Return the problem of goals, for which about ``units_at_first`` units near them were read."""
 
     def unit_distances(self, containers: str, objective: Objective) -> "UnitDistances | None":
         """Return for each unit a lower bound on the cost of any tree with it; ``None`` if unknown."""
 
     def subject(self, everything: bool, goals: Iterable[int]) -> "Subject":
-        """Return the network and kitchen that a certificate is about."""
+        """Return what a certificate is about; see :meth:`Dataset.subject`."""
 
 
 class Nearby:
     """A problem of a store over the units read so far, which are near its goals; :meth:`grow` reads more.
 
-    ``cone`` has the units read, out of all units that the goals can need. A node is *open* if it is needed,
-    but the units that make it were not all read. ``data`` is the dataset, and ``containers`` the name of the
-    container rule.
+    A node is *open* if it is needed, but not all units that make it were read.
+    ``cone``: the units read, out of all units that the goals can need.
+    ``data``: the dataset.
+    ``containers``: the name of the container rule.
     """
 
     def __init__(self, data: UnreadData, cone: Cone, containers: str) -> None:
         self.data, self.containers = data, containers
         self._cone = cone
         self._problem: Problem | None = None  # over the units read so far
-        self._relaxed: Problem | None = None
+        self._relaxation: Problem | None = None
 
     @property
     def goals(self) -> tuple[int, ...]:
@@ -55,7 +58,7 @@ class Nearby:
     def copy(self) -> "Nearby":
         """Return a copy with the same units read; reading more units in one does not affect the other."""
         other = Nearby(self.data, self._cone.copy(), self.containers)
-        other._problem, other._relaxed = self._problem, self._relaxed
+        other._problem, other._relaxation = self._problem, self._relaxation
         return other
 
     @property
@@ -74,11 +77,14 @@ class Nearby:
         return self.data.unit_distances(self.containers, objective)
 
     def subject(self) -> "Subject":
-        """Return the network and kitchen that a certificate of the answer is about."""
+        """Return the network and kitchen that a certificate is about, without reading more units."""
         return self.data.subject(False, self.goals)
 
     def full_problem(self) -> Problem:
-        """Return the problem over all units that the goals can need; those not read yet are read."""
+        """Return the problem over all units that the goals can need, and read those that were not read.
+
+        If no node is open, this is :attr:`problem`.
+        """
         return self.data.problem(self.goals, self.containers) if self._cone.open else self.problem
 
     @property
@@ -92,18 +98,19 @@ class Nearby:
         User rules see the kitchen without the open nodes. So a rule that does not depend on the available
         nodes holds for the same units here as in the whole network.
         """
-        if self._relaxed is None:
+        if self._relaxation is None:
             problem, open_nodes = self.problem, self._cone.open
             local_ids = (o for o, number in enumerate(problem.network.object_numbers) if number in open_nodes)
             kitchen = problem.kitchen.union(local_ids)
-            self._relaxed = replace(problem, kitchen=kitchen, as_seen=problem, origin=None)
-        return self._relaxed
+            self._relaxation = replace(problem, kitchen=kitchen, as_seen=problem, origin=None)
+        return self._relaxation
 
     def open_nodes_used(self, units: Iterable[int]) -> list[int]:
         """Return the open nodes that a tree of the relaxation needs and does not make.
 
-        They are ids in the whole network. ``units`` are the units of the tree by id in :attr:`problem`, in an
-        order that executes in the relaxation. A tree that needs no open node is also a tree of the problem.
+        They are ids in the whole network, sorted. If there are none, the tree is also a tree of
+        :attr:`problem`. ``units`` are the units of the tree by id in :attr:`problem`, in an order that
+        executes in the relaxation.
         """
         problem = self.problem
         available, used_nodes = set(problem.kitchen), set[int]()
@@ -119,7 +126,7 @@ class Nearby:
         With ``n`` units read so far, ``n // step + 1`` more are read: a smaller ``step`` reads more.
         """
         self._cone.grow(objects, len(self._cone.units) // step + 1)
-        self._problem = self._relaxed = None
+        self._problem = self._relaxation = None
 
     @property
     def unit_count(self) -> int:
@@ -127,9 +134,9 @@ class Nearby:
         return len(self._cone.units)
 
     def open_nodes_needed(self, units: Iterable[int]) -> list[int]:
-        """Return the open nodes among the goals and the inputs of units, by id in the whole network.
+        """Return the open nodes among the goals and the inputs of units, by id in the whole network, sorted.
 
-        ``units`` are ids in :attr:`problem`.
+        ``units`` are ids in :attr:`problem`. A node counts also if one of the units makes it.
         """
         problem, open_nodes = self.problem, self._cone.open
         needed = {o for unit in units for o in problem.needs[unit]}.union(problem.goals)
@@ -137,13 +144,16 @@ class Nearby:
 
 
 class _FieldReadLater:
-    """A field of a problem that is read at its first access, unless the problem has its own value."""
+    """A field of a :class:`NearbyProblem`, whose value is read at the first access to any such field.
+
+    A problem with its own values (without ``start``) has its own value, which needs no reading.
+    """
 
     def __set_name__(self, owner: type, name: str) -> None:
         self._name, self._own_name = name, f"_own_{name}"
 
     def __get__(self, problem: "NearbyProblem | None", owner: type) -> Any:
-        """Return the own value of a problem, or that of its :attr:`~NearbyProblem.full_problem`."""
+        """Return the value of :attr:`~NearbyProblem.full_problem`; without ``start``, the own value."""
         if problem is None:
             return self
         return (
@@ -160,7 +170,8 @@ class NearbyProblem(Problem):
     """A problem of a large store; all units that its goals can need are read at the first access to a field.
 
     These fields are the network, the kitchen, the goals and the prices. Searches that need fewer units use
-    :meth:`nearby` instead. A copy with changed fields has the values passed to it, and reads nothing.
+    :meth:`nearby` instead. A copy with changed fields has its own values: those passed to it. It reads
+    nothing.
     """
 
     network: Network = _FieldReadLater()  # type: ignore[assignment]
@@ -192,13 +203,17 @@ class NearbyProblem(Problem):
         return self.start.full_problem()
 
     def nearby(self) -> Nearby | None:
-        """Return a copy of ``start``, to read more units in it; ``None`` if all units were read."""
+        """Return a copy of ``start``, in which more units can be read without changing this problem.
+
+        Return ``None`` if all units were read, or for a problem with its own values.
+        """
         return None if self.start is None or "full_problem" in vars(self) else self.start.copy()
 
     def single_goal_problems(self) -> list[Problem]:
-        """Return a problem for each goal by itself.
+        """Return a problem for each goal by itself, for which about ``units_at_first`` units are read.
 
-        Unless all units of this problem were read, about ``units_at_first`` units are read for each of them.
+        If all units of this problem were read, or if it has its own values, nothing is read: these problems
+        have its network.
         """
         start = self.start
         if start is None or "full_problem" in vars(self):
@@ -214,11 +229,14 @@ class NearbyProblem(Problem):
 
     @property
     def conditions(self) -> str:
-        """The conditions of every claim about this problem, in a few words."""
+        """The conditions of every claim about this problem, in a few words: container rule and level."""
         return super().conditions if self.first_problem is None else self.first_problem.conditions
 
     def require_known_for(self, objectives: Collection[Objective]) -> None:
-        """Require the rates and prices that objectives need, as :meth:`Problem.require_known_for` does."""
+        """Raise :class:`UserError` if an objective needs rates or prices that are not known.
+
+        It does so as :meth:`Problem.require_known_for`, without reading more of the store.
+        """
         if self.first_problem is None:
             super().require_known_for(objectives)
         else:
@@ -228,7 +246,8 @@ class NearbyProblem(Problem):
 def without_reading_more(problem: Problem) -> Problem:
     """Return a problem with the same goals and kitchen, whose fields are accessed without reading a store.
 
-    For a :class:`NearbyProblem`, this is the problem over the units read at first.
+    For a :class:`NearbyProblem`, this is the problem over the units read at first. Any other problem is
+    returned as it is.
     """
     if isinstance(problem, NearbyProblem):
         return problem.first_problem or problem

@@ -45,10 +45,15 @@ REFINEMENT = RefinementTuning()
 
 
 def near_goals(problem: Problem, objectives: Sequence[Objective], settings: Settings) -> "Nearby | None":
-    """Return the units of a large store near the goals of a problem, as a :class:`Nearby`.
+    """Return the units that were read of a large store, near the goals of a problem.
 
-    Return ``None`` if the problem is not about a large store, or if its settings or objectives need all
-    units.
+    More units can be read in the result without changing the problem.
+
+    Return ``None`` if :func:`solve_nearby` does not apply:
+    - if the problem is not about a large store, or all its units were read,
+    - if an objective is not built in, or does not only add or multiply values of units,
+    - if a rule is not antimonotone, or
+    - if the settings have options of clingo, replaced encodings, or not all reductions.
     """
     nearby_of: Callable[[], Nearby | None] | None = getattr(problem, "nearby", None)
     if nearby_of is None or settings.reductions != ALL or settings.clingo_options:
@@ -70,16 +75,19 @@ def solve_nearby(
     only clingo can check, the units of the optimal tree without rules are read first, then those of the
     smallest tree that keeps the rules.
 
-    At a limit, return the best tree among the units read, with the bound of the relaxation. Return ``None``
-    if no tree exists even without rules: the caller then reads all units, to explain why. Of the trees, only
-    the last one is reported.
+    At a limit or ctrl-C, return the best tree among the units read, or an outcome without a tree. Its bound
+    on the first objective is the tightest of all rounds. If the rules exclude all trees, return an outcome
+    that says so. Return ``None`` if no tree exists even without rules: the caller then reads all units, to
+    explain why.
+
+    Warnings and bounds are passed to ``reporter``, but of the trees only the last one.
     """
     reporter = reporter or Reporter()
     if settings.constraints:
         program_of(nearby.problem, settings, reporter.warning)  # warns of names that the rules alone have
     deadline = settings.effective_deadline
-    with_rules = settings._replace(deadline=deadline)
-    without_rules = with_rules._replace(constraints=(), constants=())
+    settings_with_rules = settings._replace(deadline=deadline)
+    settings_without_rules = settings_with_rules._replace(constraints=(), constants=())
     first_objective = levels(tuple(objectives))[0]
     tighter = min if multiplies(first_objective) else max
     bounds_found: list[int | Fraction] = []  # on the first objective
@@ -87,7 +95,7 @@ def solve_nearby(
     smallest_tree: list[int] | None = None  # with the rules, by number; ``None`` before the search
     unconstrained: Outcome | None = None
     if need_clingo(settings):  # the optimum without rules is needed anyway, and read quickly
-        unconstrained = solve_nearby(nearby, objectives, without_rules, _WarningsAndBounds(reporter))
+        unconstrained = solve_nearby(nearby, objectives, settings_without_rules, _WarningsAndBounds(reporter))
         if unconstrained is None:
             return None
         bounds_found += [
@@ -96,7 +104,7 @@ def solve_nearby(
     while True:
         problem = nearby.problem
         outcome = solve(
-            nearby.relaxation, objectives, with_rules, _WarningsAndBounds(reporter), units_of_rules
+            nearby.relaxation, objectives, settings_with_rules, _WarningsAndBounds(reporter), units_of_rules
         )
         if outcome.status is Status.INFEASIBLE:
             excluded_by_rules = unconstrained is not None or (
@@ -117,7 +125,7 @@ def solve_nearby(
                     smallest_tree = (
                         []
                         if first_objective is Objective.UNITS
-                        else _read_smallest_tree(nearby, with_rules, units_of_rules)
+                        else _read_smallest_tree(nearby, settings_with_rules, units_of_rules)
                     )
                 continue
         bounds = (
@@ -125,10 +133,12 @@ def solve_nearby(
         )
         outcome = outcome._replace(problem=problem, bounds=bounds)
         if open_nodes:  # at a limit: the bound holds, and the units read may have a tree
-            outcome_of_read = solve(problem, objectives, with_rules, _WarningsAndBounds(Reporter()))
-            status = Status.UNKNOWN if outcome_of_read.units is None else Status.FEASIBLE
+            outcome_of_units_read = solve(
+                problem, objectives, settings_with_rules, _WarningsAndBounds(Reporter())
+            )
+            status = Status.UNKNOWN if outcome_of_units_read.units is None else Status.FEASIBLE
             outcome = outcome._replace(
-                status=status, units=outcome_of_read.units, costs=outcome_of_read.costs
+                status=status, units=outcome_of_units_read.units, costs=outcome_of_units_read.costs
             )
         if outcome.status is Status.UNKNOWN and smallest_tree:
             units = [
@@ -150,7 +160,7 @@ def solve_nearby(
 def _may_have_tree(nearby: "Nearby", deadline: Deadline) -> bool:
     """Whether the goals have a tree without rules; units are read until that is known.
 
-    Returns true at a limit, too.
+    At a limit or ctrl-C, which stops the deadline, return true.
     """
     while True:
         relaxed = nearby.relaxation
@@ -172,9 +182,9 @@ def _may_have_tree(nearby: "Nearby", deadline: Deadline) -> bool:
 def _read_smallest_tree(nearby: "Nearby", settings: Settings, units_of_rules: set[int]) -> list[int]:
     """Search for the tree of fewest units that keeps the rules, reading units until it is found.
 
-    Return its units by id in the whole network; empty if there is no tree, or at a limit. The fewest units
-    are found faster than the optimum of other objectives, and better trees mostly use units near this tree.
-    ``units_of_rules`` collects the units on which the rules depend.
+    Return its units by id in the whole network. Return an empty list if there is no such tree, and at a limit
+    or ctrl-C. The fewest units are found faster than the optimum of other objectives, and better trees mostly
+    use units near this tree. ``units_of_rules`` collects the ids of the units on which the rules depend.
     """
     while True:
         outcome = solve(nearby.relaxation, (Objective.UNITS,), settings, mattered=units_of_rules)
@@ -196,9 +206,9 @@ def _read_more(
 ) -> None:
     """Read more units that lead to ``open_nodes``, which an optimal tree of the relaxation uses.
 
-    If many units were read before and there are no rules, repeat this for trees found by ``h_add``, until one
-    uses no open node. Such trees mostly lead to the units of an optimal tree, in a tenth of the time of a
-    proof.
+    If more than :attr:`RefinementTuning.proved_units` units were read before, and there are no rules, go on
+    with trees that ``h_add`` finds, until one uses no open node. Such trees mostly lead to the units of an
+    optimal tree, in a tenth of the time of a proof.
     """
     many_read = nearby.unit_count > REFINEMENT.proved_units
     long_rounds = many_read or need_clingo(settings)
@@ -217,10 +227,10 @@ def _read_more(
 def least_with_more(
     costs: Costs, order: Sequence[Objective], extra_units: int = 1
 ) -> tuple[int | Fraction, ...]:
-    """Return a lower bound on the cost of any tree with at least ``extra_units`` more units than ``costs``.
+    """Return a lower bound on the cost of a tree with at least ``extra_units`` more units than ``costs`` has.
 
-    The tree costs at least ``costs`` by every objective. The bound has the cost by each objective in
-    ``order``.
+    The tree must cost at least ``costs`` by every objective. The result has the cost by each objective of
+    ``order``, one of which is ``units``.
     """
     least_costs = dict(zip(order, costs.key(order), strict=True))
     least_costs[Objective.UNITS] += extra_units
@@ -228,7 +238,10 @@ def least_with_more(
 
 
 class _WarningsAndBounds(Reporter):
-    """A reporter that passes on warnings and bounds, but no trees, which may not be trees of the whole."""
+    """A reporter that passes on warnings and bounds, but no trees and no steps.
+
+    A tree of the relaxation may not be a tree of the whole network.
+    """
 
     def __init__(self, reporter: Reporter) -> None:
         self.warning = reporter.warning  # type: ignore[method-assign]

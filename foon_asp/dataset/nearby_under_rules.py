@@ -48,15 +48,19 @@ def solve_nearby_under(
 ) -> Outcome | None:
     """Solve a problem of a large store under rules, reading units near the goals and units for the rules.
 
-    Return an outcome with a proved optimum, or with a tree that may not be optimal; its ``stopped`` is set
-    only at a limit. Return ``None`` if no tree was found or the method does not apply: the caller then reads
-    all units.
+    Return one of these outcomes:
+    - a proved optimum, or a proof that no tree keeps the rules,
+    - at a limit or ctrl-C, the best tree so far or an outcome without a tree, with ``stopped`` set,
+    - a tree that may not be optimal.
+    Without a proof, the bound is the optimum without rules.
+
+    Return ``None`` if no tree was found or the method does not apply: the caller then reads all units.
     """
     if not settings.constraints or reach_of_rules(settings) is ReachOfRules.ALL:
         return None
-    without_rules = settings._replace(constraints=(), constants=())
-    nearby = near_goals(problem, objectives, without_rules)
-    unconstrained = None if nearby is None else solve_nearby(nearby, objectives, without_rules)
+    settings_without_rules = settings._replace(constraints=(), constants=())
+    nearby = near_goals(problem, objectives, settings_without_rules)
+    unconstrained = None if nearby is None else solve_nearby(nearby, objectives, settings_without_rules)
     if nearby is None or unconstrained is None or (unconstrained.units is None and not unconstrained.stopped):
         return None
     program_of(nearby.problem, settings, reporter.warning)
@@ -74,7 +78,14 @@ def solve_nearby_under(
 
 
 class _Search:
-    """A search for a proved optimum under rules; ``unconstrained`` is the optimum without rules."""
+    """A search for a proved optimum under rules.
+
+    ``unconstrained``: the outcome without rules, which is optimal.
+    ``best``: the incumbent; it has no tree at first, and its bound is the optimum without rules.
+
+    A *request* is a constraint that at least one unit of a set is in the tree. The *kind* of a request is the
+    mask of the units of the store that may be in this set.
+    """
 
     def __init__(
         self, nearby: Nearby, unconstrained: Outcome, settings: Settings, reporter: Reporter
@@ -88,8 +99,9 @@ class _Search:
     def result(self) -> Outcome | None:
         """Return the optimum, or the incumbent if a limit is reached or optimality is not proved.
 
-        Return ``None`` if the rules depend on more than the units of a tree and its kitchen, or if the
-        distances of units are not known. Raises :class:`LimitError` at a limit while the store is read.
+        If no tree keeps the rules, return an outcome that proves this. Return ``None`` if the rules depend on
+        more than the units of a tree and its kitchen, or if the distances of units are not known. Raises
+        :class:`LimitError` at a limit while the store is read.
         """
         settings, nearby = self._settings, self._nearby
         rules = rules_for_varying_kitchens(settings)
@@ -107,21 +119,23 @@ class _Search:
                 None if requests is None else [distances.units_matching(request.rows) for request in requests]
             )
         if requests is None or kinds is None:  # the rules depend only on the units of a tree
-            tree = self._solve_part(nearby.problem)
+            first_outcome = self._solve_part(nearby.problem)
         else:
-            tree = self._find_tree(distances, kinds, [request.always for request in requests])
-            if tree.status is Status.INFEASIBLE:
-                return tree
-        problem = None if tree.stopped else self._problem_of_better_trees(tree, distances, kinds)
+            first_outcome = self._find_tree(distances, kinds, [request.always for request in requests])
+            if first_outcome.status is Status.INFEASIBLE:
+                return first_outcome
+        problem = (
+            None if first_outcome.stopped else self._problem_of_better_trees(first_outcome, distances, kinds)
+        )
         if problem is None:
-            return self.best._replace(stopped=tree.stopped)
+            return self.best._replace(stopped=first_outcome.stopped)
         outcome = self._solve_part(problem)
         if outcome.status is not Status.OPTIMAL:
             return self.best._replace(stopped=outcome.stopped)
         return self._as_proved(outcome)
 
     def _solve_part(self, problem: Problem) -> Outcome:
-        """Solve the problem of a part of the network; if there is a tree, make it the incumbent."""
+        """Solve the problem of a part of the network; if it has a tree, make this tree the incumbent."""
         outcome = solve(problem, self._unconstrained.objectives, self._settings)
         if outcome.units is not None:
             self.best = self.best._replace(
@@ -134,16 +148,19 @@ class _Search:
     ) -> Outcome:
         """Search for a tree that keeps the rules, first among few units, then among more.
 
-        The units are those of the optimum without rules, and the nearest units of each kind that the rules
-        can require. ``is_required`` says of each kind whether the rules always require it. If no tree is
-        found, the status of the outcome is ``infeasible`` if a required kind has no unit that can execute,
-        else ``unknown``.
+        The units are those of the optimum without rules, and the nearest units of each kind.
+        ``is_required``: for each kind, whether the rules always require a unit of it.
+
+        If no tree is found, the status of the outcome is ``infeasible`` if a required kind has no unit that
+        can execute. Otherwise it is ``unknown``.
         """
-        tree = _whole_unit_ids(self._unconstrained)
+        unconstrained_units = _whole_unit_ids(self._unconstrained)
         for max_units, max_steps in NEARBY.widths:
             with self._settings.effective_deadline.watched("reading"):
-                units, least_distances = distances.nearest_units(kinds, tree, max_units, max_steps)
-                problem = self._nearby.problem_of_units({*tree, *units})
+                units, least_distances = distances.nearest_units(
+                    kinds, unconstrained_units, max_units, max_steps
+                )
+                problem = self._nearby.problem_of_units({*unconstrained_units, *units})
             outcome = self._solve_part(problem)
             if outcome.units is not None or outcome.stopped:
                 return outcome
@@ -155,47 +172,56 @@ class _Search:
         return outcome._replace(status=Status.UNKNOWN)
 
     def _problem_of_better_trees(
-        self, tree: Outcome, distances: UnitDistances, kinds: Sequence[Mask] | None
+        self, best_outcome: Outcome, distances: UnitDistances, kinds: Sequence[Mask] | None
     ) -> Problem | None:
-        """Return the problem over all units that can be in a tree as good as ``tree`` or better.
+        """Return the problem over the units of the incumbent and all units that can be in a better tree.
 
-        Return ``None`` if these units are more than :attr:`NearbyTuning.max_units`, or if ``tree`` is an
-        outcome without a tree.
+        ``best_outcome``: has the incumbent.
+        ``kinds``: the kinds of requests; ``None`` if the rules may require any unit.
+
+        Return ``None`` if ``best_outcome`` has no tree, or if there are more than
+        :attr:`NearbyTuning.max_units` units near the goals or far from them.
         """
-        if tree.costs is None or tree.units is None:
+        if best_outcome.costs is None or best_outcome.units is None:
             return None
-        max_cost = self._max_far_cost(tree.costs)
+        max_cost = self._max_far_cost(best_outcome.costs)
         with self._settings.effective_deadline.watched("reading"):
-            near_units = self._read_near_units(tree.costs)
+            near_units = self._read_near_units(best_outcome.costs)
             far_units = [] if near_units is None else distances.relevant_units(kinds, near_units, max_cost)
             if near_units is None or len(far_units) > NEARBY.max_units:
                 return None
-            return self._nearby.problem_of_units({*near_units, *far_units, *_whole_unit_ids(tree)})
+            return self._nearby.problem_of_units({*near_units, *far_units, *_whole_unit_ids(best_outcome)})
 
     def _read_near_units(self, costs: Costs) -> set[int] | None:
         """Read all units for the goals that can be in a tree that costs at most ``costs``.
 
-        Return their ids in the whole network, maybe with a few more units; ``None`` if they are too many.
+        Return their ids in the whole network, maybe with a few more units. Return ``None`` if more than
+        :attr:`NearbyTuning.max_units` units were read, or if the relaxation gives no lower bound.
         """
         nearby, deadline = self._nearby, self._settings.effective_deadline
         while nearby.unit_count <= NEARBY.max_units:
-            relaxed = nearby.relaxation
-            relaxed_bound = reduce_under_rules(
-                relaxed, self._order, expired=lambda: deadline.passed, course=BOUND
+            relaxation = nearby.relaxation
+            reduced = reduce_under_rules(
+                relaxation, self._order, expired=lambda: deadline.passed, course=BOUND
             )
-            subproblem = relaxed_bound.subproblem
+            subproblem = reduced.subproblem
             if subproblem is None:
                 return None
             units = subproblem.units_within(subproblem.costs.combined_cost(costs), lambda: deadline.passed)
             deadline.check()
             open_nodes = nearby.open_nodes_needed(units)
             if not open_nodes:
-                return {*map(relaxed.network.unit_number, units)}
+                return {*map(relaxation.network.unit_number, units)}
             nearby.grow(open_nodes, REFINEMENT.wide_step)
         return None
 
     def _max_far_cost(self, costs: Costs) -> int:
-        """Return the greatest distance that a far unit can have in a tree better than ``costs``."""
+        """Return the greatest distance that a far unit can have in a tree better than ``costs``.
+
+        The distance is a number of units, or for ``success`` a scaled logarithm; see :class:`UnitDistances`.
+        If a better tree can have any number of units, it is ``FAR - 1``, so that all units that can execute
+        count.
+        """
         order, least_costs = self._order, self._unconstrained.costs
         assert least_costs is not None
         key = costs.key(order)
@@ -209,7 +235,8 @@ class _Search:
     def _as_proved(self, outcome: Outcome) -> Outcome:
         """Return the outcome as proved for the whole network, and report its tree.
 
-        Its cuts are omitted, because they hold only for a part of the network.
+        Its proof is by cuts only if the proofs with and without rules are both by cuts. The cuts themselves
+        and the cases are omitted, because they hold only for a part of the network.
         """
         assert outcome.costs is not None
         self._reporter.tree(outcome.costs)
@@ -224,7 +251,7 @@ def _whole_unit_ids(outcome: Outcome) -> list[int]:
 
 
 def _outcome_without_tree(nearby: Nearby, unconstrained: Outcome) -> Outcome:
-    """Return an outcome of unknown status, whose bound is that of the optimum without rules."""
+    """Return an outcome of unknown status; of ``unconstrained``, it has the bound on the first objective."""
     first_objective = levels(unconstrained.objectives)[0]
     bounds = {
         objective: bound for objective, bound in unconstrained.bounds.items() if objective == first_objective

@@ -12,8 +12,8 @@ class DataPrices(NamedTuple):
 
     ``motions``: the prices by motion; ``None`` where no file lists any.
     ``units``: the prices of single units that are in memory.
-    ``from_file``: whether the imported file of prices counts for other units of a store. A unit without a
-    price there has the price that the networks in the store state.
+    ``from_file``: of a store, whether the imported file of prices still counts for units without a price in
+    ``units``. The prices that the imported networks state count in any case, after those of the file.
     """
 
     motions: Mapping[str, Fraction] | None = None
@@ -22,7 +22,7 @@ class DataPrices(NamedTuple):
 
     @classmethod
     def of(cls, prices: UnitPrices | None) -> "DataPrices":
-        """Return the prices of data in memory; ``None`` is no prices."""
+        """Return the prices of data in memory; without any prices if ``prices`` is ``None``."""
         return cls() if prices is None else cls(prices.motions, prices.units)
 
 

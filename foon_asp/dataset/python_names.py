@@ -16,14 +16,14 @@ from foon_asp.text.unknown_node import GoalError, Wording
 
 
 class NamedData(Protocol):
-    """The interface of data in which names are looked up."""
+    """Data in which names are looked up, such as a dataset."""
 
     @property
     def names(self) -> NodeNames:
         """The lookup of object nodes by name."""
 
     @property
-    def listed(self) -> Sequence[ListedObject]:
+    def goal_entries(self) -> Sequence[ListedObject]:
         """The entries of the goals file; a goal may be named as they name it."""
 
     def at_hand(self, o: int) -> bool:
@@ -37,36 +37,37 @@ class NodeAndUnitNames(NodeNames, Protocol):
         """Return the id of a unit, or ``None`` where the network does not have it."""
 
 
-def node_id(dataset: NamedData, name: str | ObjectNode, what: str) -> int:
-    """Return the id of a named node in the whole network; ``what`` is its noun, such as ``kitchen item``.
+def node_id(dataset: NamedData, name: str | ObjectNode, noun: str) -> int:
+    """Return the id of a named node in the whole network; ``noun`` is what it is, such as ``kitchen item``.
 
-    If the noun is ``goal``, names of the goals file count too. Raises :class:`UserError` with candidates for
-    a name that means no object node, or several.
+    Names that the goals file has are also understood if the noun is ``goal``. An :class:`ObjectNode` is
+    compared at the level of the network. Raises :class:`UserError` with candidates for a name that means no
+    object node, or several.
     """
     names = dataset.names
     if isinstance(name, ObjectNode):
-        number = names.object_id(node_at_level(name, names.level))
-        if number is None:
-            raise UserError(f"no object node of the network is the {what} {str(name)!r}")
-        return number
+        object_id = names.object_id(node_at_level(name, names.level))
+        if object_id is None:
+            raise UserError(f"no object node of the network is the {noun} {str(name)!r}")
+        return object_id
     try:
-        return find_goal(name, names, dataset.listed if what == "goal" else (), Wording(what, ""))
+        return find_goal(name, names, dataset.goal_entries if noun == "goal" else (), Wording(noun, ""))
     except GoalError as error:
         raise UserError(python_error_text(error)) from None
 
 
-def node_ids(dataset: NamedData, names: Names, what: str) -> list[int]:
-    """Return the ids of named object nodes, each found as by :func:`node_id`."""
-    return [node_id(dataset, name, what) for name in names_as_list(names)]
+def node_ids(dataset: NamedData, names: Names, noun: str) -> list[int]:
+    """Return the id of each named object node, found as by :func:`node_id`."""
+    return [node_id(dataset, name, noun) for name in names_as_list(names)]
 
 
 def stated_copies(
-    dataset: NamedData, amounts: Mapping[Any, int | None], what: str, least: int = 1
+    dataset: NamedData, amounts: Mapping[Any, int | None], noun: str, least: int = 1
 ) -> dict[ObjectNode, int]:
-    """Return numbers of copies by object node, from numbers by name; ``None`` as a number is left out.
+    """Return numbers of copies by object node, from ``amounts`` by name; ``None`` as an amount is left out.
 
-    Raises :class:`UserError` as :func:`node_id` does, and for a number that is not a whole one of at least
-    ``least``.
+    ``noun`` is what the names are, as in :func:`node_id`. Raises :class:`UserError` as :func:`node_id` does,
+    and for a number that is not a whole one from ``least`` to :data:`MAX_AMOUNT`.
     """
     copies: dict[ObjectNode, int] = {}
     for name, amount in amounts.items():
@@ -77,15 +78,16 @@ def stated_copies(
                 f"found the amount {amount!r} of {str(name)!r}, expected a whole number from {least} to "
                 f"{MAX_AMOUNT}"
             )
-        copies[dataset.names.node(node_id(dataset, name, what))] = amount
+        copies[dataset.names.node(node_id(dataset, name, noun))] = amount
     return copies
 
 
 def item_id(dataset: NamedData, name: str | ObjectNode) -> int:
     """Return the id of a named kitchen item.
 
-    A label means the item with nothing but the label, or else the only item with it. Raises
-    :class:`UserError` for a name that is no item, and with candidates for a label of several items.
+    A label means the item that has no more than this label, or if there is none, the only item with the
+    label. Raises :class:`UserError` for a name that is no item, and for a label of several items, with these
+    as candidates.
     """
     names = dataset.names
     label = None if isinstance(name, ObjectNode) else _bare_label(name)
@@ -111,7 +113,7 @@ def item_id(dataset: NamedData, name: str | ObjectNode) -> int:
 
 
 def _bare_label(name: str) -> str | None:
-    """Return the label if a name is nothing but a label; ``None`` for a name of a whole node.
+    """Return the label if a name is nothing but a label. Return ``None`` for the notation of a whole node.
 
     A name that is not valid notation counts as a label, as written.
     """
@@ -125,9 +127,13 @@ def _bare_label(name: str) -> str | None:
 def changed_rates(
     rates: Mapping[str, Fraction] | None, changed: Mapping[str, Number] | None, motions: Collection[str]
 ) -> Mapping[str, Fraction] | None:
-    """Return success rates by motion, with those in ``changed`` replaced; ``None`` if both are ``None``.
+    """Return success rates by motion: ``rates``, with those in ``changed`` replaced or added.
 
-    ``motions`` are all motions of the network. Raises :class:`UserError` for an unknown motion.
+    If ``changed`` is ``None``, return ``rates``, which may be ``None`` for no rates.
+    ``motions``: all motions of the network.
+
+    Raises :class:`UserError` for a rate that is not above 0 and at most 1. If there are ``rates``, it is also
+    raised for a motion that is in neither ``rates`` nor ``motions``.
     """
     if changed is None:
         return rates
@@ -147,20 +153,23 @@ def changed_rates(
 def changed_prices(
     prices: UnitPrices, changed: UnitPricesNamed, motions: Collection[str], names: NodeAndUnitNames
 ) -> UnitPrices:
-    """Return ``prices`` with some of them replaced; ``changed`` has prices by motion and by unit.
+    """Return ``prices`` with those in ``changed``, which are by motion and by unit, replaced or added.
 
-    Below level 3, a price counts for all units that a unit stands for. ``names`` looks units up. ``motions``
-    are all motions of the network. Raises :class:`UserError` for other motions and units.
+    ``motions``: all motions of the network.
+    ``names``: looks up units. Below level 3, the price of a unit counts for all units of level 3 that were
+    merged into it.
+
+    Raises :class:`UserError` for a motion or unit that the network lacks, and for a price below 0.
     """
     by_motion, by_unit = dict(prices.motions), dict(prices.units)
     for named, value in changed.items():
         price = unit_price(value, f"the price of {str(named)!r}")
         if isinstance(named, FunctionalUnit):
-            number = names.unit_id(named)
-            if number is None:
+            unit_id = names.unit_id(named)
+            if unit_id is None:
                 raise UserError(f"no unit of the network is {str(named)!r}")
             if isinstance(names, Network) and names.detailed is not None:
-                by_unit |= dict.fromkeys(map(names.detailed.unit, names.stands_for[number]), price)
+                by_unit |= dict.fromkeys(map(names.detailed.unit, names.stands_for[unit_id]), price)
             else:
                 by_unit[named] = price
         elif named in motions:
@@ -181,6 +190,9 @@ def names_as_list(names: Names) -> list[str | ObjectNode]:
 
 
 def python_error_text(error: GoalError) -> str:
-    """Return the text of an error, with its candidates written as Python strings."""
+    """Return the text of an error, with a line for each candidate as a Python string.
+
+    A last line says how many more candidates there are.
+    """
     lines = [error.message, *(f"  {candidate!r}" for candidate in error.candidates)]
     return "\n".join(lines + ([f"  ... and {error.hidden} more"] if error.hidden else []))

@@ -28,8 +28,9 @@ from foon_asp.text.unit_price_list import read_unit_prices
 def read_store(files: DataFiles, level: int) -> Dataset:
     """Open the store that is named as the network; other named files replace what was imported.
 
-    Below level 3, the whole store is read and closed, since nodes are merged at such a level. Raises
-    :class:`UserError` if another network is named, too.
+    Below level 3, the whole store is read and closed, since nodes are merged at such a level. Entries of the
+    named files that match nothing in the store become remarks. Raises :class:`UserError` if a second network
+    is named.
     """
     if len(files.network) > 1:
         raise UserError(

@@ -27,14 +27,17 @@ if TYPE_CHECKING:  # few answers need numpy
 
 
 class StoreSource(DataSource):
-    """A store as the source of a dataset; variants of the dataset share what was read from it."""
+    """A store as the source of a dataset; variants of the dataset share what was read from it.
+
+    ``names`` is the open store.
+    """
 
     names: Store
     kitchen: StoredIds
     prices: DataPrices
 
     def __init__(self, store: Store, unit_amounts: Sequence[Row[UnitAmount, int]] = ()) -> None:
-        """Take an open store, and the rows of a table of amounts that replace imported amounts."""
+        """Take an open store, and rows of a table of amounts, which replace imported amounts."""
         self._amount_table = unit_amounts
         self.names, self.seconds = store, 0.0
         self.unit_count, self.left_out, self.repeated = store.unit_count, store.left_out, store.repeated
@@ -44,7 +47,7 @@ class StoreSource(DataSource):
 
     @cached_property
     def _amounts_and_warnings(self) -> tuple[DataAmounts, list[Diagnostic]]:
-        """The amounts of units, and warnings about rows of the table of amounts that match no unit."""
+        """The amounts with the table of amounts, and warnings about rows of the table that match no unit."""
         units = (
             self.names.units_with_motions({row.name[0] for row in self._amount_table})
             if self._amount_table
@@ -54,7 +57,7 @@ class StoreSource(DataSource):
 
     @property
     def amounts(self) -> DataAmounts:
-        """The numbers of copies that units take and make of object nodes."""
+        """The numbers of copies that units take and make of object nodes, where these are not 1."""
         return self._amounts_and_warnings[0] if self._amount_table else self.names.amounts
 
     @property
@@ -64,7 +67,7 @@ class StoreSource(DataSource):
 
     @property
     def starting_kitchen(self) -> StoredStartingKitchen:
-        """The starting kitchen."""
+        """The starting kitchen of the whole network, also if another kitchen was given."""
         return self._starting_kitchen
 
     @property
@@ -110,12 +113,15 @@ class StoreSource(DataSource):
         available: Container[int],
         max_units: int | None,
     ) -> Cone:
-        """Read the cone of goals, or about ``max_units`` units of it; see :meth:`DataSource.cone`."""
+        """Read and return the cone of goals; with ``max_units``, only about so many units near the goals.
+
+        See :meth:`DataSource.cone` for the parameters.
+        """
         with self._add_reading_time():
             return self.names.cone(goals, containers, utensils, available, max_units)
 
     def network_part(self, units: Iterable[int], objects: Iterable[int]) -> Network:
-        """Read a network that has the given units with their nodes, and the given further nodes."""
+        """Read and return a network of the given units with their nodes, and of further nodes; all by id."""
         with self._add_reading_time():
             return self.names.read_part(units, objects)
 
@@ -128,8 +134,7 @@ class StoreSource(DataSource):
     ) -> "UnitDistances":
         """Return the distance of each unit: a lower bound on the cost of any tree with the unit.
 
-        Costs are by ``objective``, and the nodes of ``kitchen`` are available, by id. Inputs whose labels are
-        ``utensils`` are ignored.
+        See :meth:`DataSource.unit_distances` for the parameters.
         """
         from foon_asp.store.unit_distances import UnitDistances  # noqa: PLC0415 (few answers need numpy)
 
@@ -138,9 +143,9 @@ class StoreSource(DataSource):
         return UnitDistances(outline, available, skipped, rates, objective)
 
     def checked_digests(self) -> dict[str, str]:
-        """Read everything, compute the digests that the store states, and return them.
+        """Read everything, compute the digests that the store states, and return them by name.
 
-        Raises :class:`UserError` if a stated digest is wrong.
+        Raises :class:`UserError` if a stated digest is not the one that is computed.
         """
         from foon_asp.proof.certificate_subject import Subject  # noqa: PLC0415 (few answers need it)
 
@@ -149,8 +154,8 @@ class StoreSource(DataSource):
         has_prices = self.prices.motions is not None or single_prices is not None
         prices = UnitPrices(self.prices.motions or {}, single_prices or {}) if has_prices else None
         computed = Subject(network, kitchen, None, frozenset(), prices).digests()
-        for name, stated in store.digests.items():
-            if stated != computed[name]:
+        for name, stated_digest in store.digests.items():
+            if stated_digest != computed[name]:
                 raise UserError(
                     f"{store.name}: the digest of the {name} that the store states is not that of what is in "
                     "it, so it was changed after the import; import its source files again"
@@ -158,19 +163,22 @@ class StoreSource(DataSource):
         return {name: computed[name] for name in store.digests}
 
     def motion_sources(self) -> Iterable[tuple[str, Source]]:
-        """Read the motions of the network, each with the first source of the first unit that has it."""
+        """Return pairs of a motion, each once, and the first source of the first unit that has it."""
         return self.names.motion_sources()
 
     def unit_prices(self, network: Network, from_file: bool) -> Mapping[FunctionalUnit, Fraction] | None:
-        """Read the prices of single units of a network; ``None`` where the store has none."""
+        """Read the prices of single units of ``network``; return ``None`` if the store has none.
+
+        See :meth:`DataSource.unit_prices` for ``from_file``.
+        """
         return self.names.unit_prices(network, from_file) if self.names.has_unit_prices else None
 
     def unpriced(self, prices: DataPrices) -> Sequence[Unpriced]:
-        """Return the number of units without a price, for each motion that has any."""
+        """Return, for each motion with unpriced units, their number and the source of the first one."""
         return self.names.unpriced(prices.motions or {}, prices.units, prices.from_file)
 
     def kitchen_items(self) -> tuple[ListedObject, ...]:
-        """Read the entries of the kitchen that was imported."""
+        """Read and return the entries of the kitchen file that was imported."""
         return self.names.kitchen_items()
 
     def close(self) -> None:

@@ -37,17 +37,18 @@ def write_comparison_chart(comparisons: Sequence[Comparison], conditions: str, f
 def _draw_boxes(comparisons: Sequence[Comparison], figure: "Figure", axes: "Axes") -> None:
     """Draw the box and the points of each search; below it stand its name and statistics.
 
-    A search without points gets no box. The figure gets wider for many searches.
+    The color of a point says how its tree executes. A search without points gets no box, but a place on the
+    axis. The figure gets wider for many searches.
     """
-    trees: dict[str, list[tuple[float, Verdict]]] = {}
+    points_by_search: dict[str, list[tuple[float, Verdict]]] = {}
     for comparison in comparisons:
         for judged in comparison.searches:
-            points = trees.setdefault(judged.search, [])
+            points = points_by_search.setdefault(judged.search, [])
             ratio = judged.ratios.get(Objective.UNITS)
             if ratio is not None and judged.verdict is not None:
                 points.append((float(ratio), judged.verdict))
     labels = []
-    for position, (name, points) in enumerate(trees.items()):
+    for position, (name, points) in enumerate(points_by_search.items()):
         if not points:
             labels.append(f"{name}\nno tree to compare")
             continue
@@ -70,9 +71,9 @@ def _draw_boxes(comparisons: Sequence[Comparison], figure: "Figure", axes: "Axes
         xs = [position + 0.32 * offset for offset in offsets]
         colors = [_POINT_COLORS[verdict] for verdict in verdicts]
         _draw_points(axes, xs, ratios, colors)
-    figure.set_size_inches(max(figure.get_figwidth(), len(trees)), figure.get_figheight())
-    axes.set_xlim(-0.6, len(trees) - 0.4)
-    axes.set_xticks(range(len(trees)), labels)
+    figure.set_size_inches(max(figure.get_figwidth(), len(points_by_search)), figure.get_figheight())
+    axes.set_xlim(-0.6, len(points_by_search) - 0.4)
+    axes.set_xticks(range(len(points_by_search)), labels)
     axes.grid(visible=False, axis="x")
     axes.axhline(1, color="black", linewidth=1, zorder=1)
     axes.set_ylabel("units / units of the optimum")

@@ -40,11 +40,11 @@ _POINT_DEFAULTS = f"""\
 
 
 def dot_text(drawing: Drawing) -> str:
-    """Return a drawing in DOT, from top to bottom, with a legend.
+    """Return a drawing in DOT, from top to bottom, with a legend of its roles.
 
-    A network of more than :data:`BOXED_UNITS` units is drawn by :func:`graph_text`.
+    For a network of more than :data:`BOXED_UNITS` units, return :func:`graph_text`, which has no legend.
     """
-    if drawing.graph and drawing.units > BOXED_UNITS:
+    if drawing.graph and drawing.unit_count > BOXED_UNITS:
         return graph_text(drawing)
     labels = (_node_line(box, (*box.head, *box.details), _ROLE_ATTRIBUTES[box.role]) for box in drawing.boxes)
     return _digraph_text(drawing, _BOX_DEFAULTS, [*_legend_lines(drawing), *labels])
@@ -72,7 +72,10 @@ def graph_text(drawing: Drawing, max_names: int = 24) -> str:
 
 
 def _digraph_text(drawing: Drawing, defaults: str, nodes: Iterable[str]) -> str:
-    """Return a graph in DOT: the caption of a drawing, lines of ``nodes``, and the arrows of the drawing."""
+    """Return a graph in DOT: the caption of a drawing, ``nodes``, and the arrows of the drawing.
+
+    ``defaults`` and ``nodes`` are lines of DOT.
+    """
     caption = _quoted_lines([line for text in drawing.caption for line in wrap(text, width=90)])
     arrows = (f"  {tail} -> {head}" for tail, head in drawing.arrows)
     return "\n".join(("digraph foon {", defaults, f"  label={caption}", *nodes, *arrows, "}\n"))

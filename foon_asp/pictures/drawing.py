@@ -69,7 +69,7 @@ class Drawing(NamedTuple):
     graph: bool = False
 
     @property
-    def units(self) -> int:
+    def unit_count(self) -> int:
         """The number of functional units; each has one box, which is its motion."""
         return sum(box.role is Role.MOTION for box in self.boxes)
 
@@ -124,7 +124,7 @@ def draw_plan(
     ``goal_sources``: these positions by goal.
 
     A copy that a step makes and a later step or a goal takes is one box, and so is a node that nothing makes.
-    All other copies are separate boxes.
+    All other copies are separate boxes. Each goal has a box, also if no unit takes or makes it.
     """
     canvas = _Canvas(kitchen, goal_sources.keys())
     consumed = {copy for step in (*sources, goal_sources) for copy in step.items()}
@@ -156,7 +156,7 @@ def draw_network(
 ) -> Drawing:
     """Return the drawing of units as a bipartite graph, in which every object node is one box.
 
-    ``units`` are pairs of an id and a unit.
+    ``units`` are pairs of an id, which the box of the motion shows, and a unit. Nodes of no unit have no box.
     """
     canvas = _Canvas(kitchen, goals)
     for unit_id, unit in units:

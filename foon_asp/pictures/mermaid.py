@@ -20,7 +20,7 @@ _SPECIAL = re.compile(r"[!-'*+\-./:;<-@\\^_`|~]")
 
 
 def mermaid_text(drawing: Drawing) -> str:
-    """Return a drawing as a Mermaid flowchart, from top to bottom."""
+    """Return a drawing as a Mermaid flowchart from top to bottom; its title is the caption in one line."""
     return "\n".join(_flowchart_lines(drawing)) + "\n"
 
 
@@ -40,7 +40,7 @@ def _flowchart_lines(drawing: Drawing) -> Iterator[str]:
 
 
 def _box_text(box: Box) -> str:
-    """Return the text of a box in a flowchart, with a bold label, its details and its role."""
+    """Return the text of a box in a flowchart: its name, bold label, details, and role as the CSS class."""
     opening, closing, _ = _ROLE_STYLES[box.role]
     head = "<br/>".join(map(_escape, box.head))
     label = "<br/>".join((f"<b>{head}</b>", *map(_escape, box.details)))

@@ -63,7 +63,7 @@ class Page(NamedTuple):
         )
 
     def write(self, file: str | Path) -> None:
-        """Write the page to a file; raises :class:`UserError` if it cannot be written."""
+        """Write the page to a file, completely or not at all; raises :class:`UserError` if it fails."""
         write_whole(Path(file), utf_8(self.html()))
 
     def frame(self) -> str:

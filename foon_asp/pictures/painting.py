@@ -12,10 +12,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-def paint_drawing(drawing: Drawing, form: Literal["png", "pdf"]) -> bytes:
+def paint_drawing(drawing: Drawing, picture_format: Literal["png", "pdf"]) -> bytes:
     """Return the bytes of a drawing as PNG or PDF, in the font of matplotlib.
 
-    Raises :class:`UserError` for a drawing that is too large, and if Graphviz or matplotlib is not installed.
+    A large PNG has fewer dots per inch, at most 40 million in all. Raises :class:`UserError` for a drawing
+    that is too large, and if Graphviz or matplotlib is not installed.
     """
     graph = layout_json(drawing)
     _, _, width, height = map(float, graph["bb"].split(","))
@@ -26,8 +27,10 @@ def paint_drawing(drawing: Drawing, form: Literal["png", "pdf"]) -> bytes:
         _paint_elements(axes, [graph, *graph.get("edges", []), *graph.get("objects", [])])
         # more dots per inch are sharper in print, and larger files; viewers refuse more than 40 million dots
         dpi = min(144, 72 * (40e6 / width / height) ** 0.5)
-        metadata = {"CreationDate": None} if form == "pdf" else None
-        figure.savefig(picture, format=form, dpi=dpi, metadata=metadata, bbox_inches="tight", pad_inches=0.15)
+        metadata = {"CreationDate": None} if picture_format == "pdf" else None
+        figure.savefig(
+            picture, format=picture_format, dpi=dpi, metadata=metadata, bbox_inches="tight", pad_inches=0.15
+        )
     return picture.getvalue()
 
 

@@ -10,16 +10,16 @@ from foon_asp.proof.simulation import Verdict, simulate
 
 
 def plan_drawing(problem: Problem, units: Sequence[FunctionalUnit], caption: str = "") -> Drawing:
-    """Return the drawing of a plan in which items are used up, with a caption below its title.
+    """Return the drawing of a plan in which items are used up; its caption is a title and ``caption``.
 
-    If ``caption`` is empty, it says whether the plan executes, under which conditions, and how many units it
-    has.
+    If ``caption`` is empty, the caption says whether the plan executes, under which conditions, and how many
+    units it has.
     """
     replay = replay_for(problem, units)
     sources = [{copy.node: copy.made for copy in (*step.gone, *step.stayed)} for step in replay.steps]
     sources += [{} for _ in units[len(sources) :]]
-    final = {copy.node: copy.made for copy in replay.left}
-    goal_sources = {goal: final.get(goal) for goal in problem.goal_nodes}
+    makers_at_end = {copy.node: copy.made for copy in replay.left}
+    goal_sources = {goal: makers_at_end.get(goal) for goal in problem.goal_nodes}
     kitchen = {node for unit in units for node in unit.inputs if problem.at_hand(node)}
     runs = "runs" if replay.shortage is None else f"does not run for want of {replay.shortage.node}"
     caption = caption or f"{runs} ({problem.conditions}), {counted(len(units), 'unit')}"
@@ -37,10 +37,11 @@ def tree_drawing(
     network: Network,
     claim: Iterable[str] = (),
 ) -> Drawing:
-    """Return the drawing of a task tree, with a caption below its title.
+    """Return the drawing of a task tree; its caption is a title and the lines of ``claim``.
 
-    ``claim`` are the lines of the caption, which say what is proved about the tree. Without them, the caption
-    says whether the tree executes, and units are numbered in an executable order, if one exists.
+    ``claim`` says what is proved about the tree. Without it, the caption says whether the tree executes,
+    under which conditions, and how many units it has. Then units are numbered in an executable order, if one
+    exists. Otherwise they are numbered as in ``tree``.
     """
     units, lines = tree.units, [*claim]
     if not lines:

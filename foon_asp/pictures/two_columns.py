@@ -16,7 +16,7 @@ class PairSection(NamedTuple):
     """A section of the page: pairs of units under a heading.
 
     A row is a unit of A, a unit of B, and their differences; a unit is ``None`` if it has no counterpart. A
-    ``folded`` section shows its rows only when the reader unfolds it.
+    ``folded`` section shows its rows only when the reader unfolds it. A section without rows is not shown.
     """
 
     heading: str
@@ -25,15 +25,16 @@ class PairSection(NamedTuple):
 
 
 def two_column_page(
-    title: str, names: Sequence[str], figures: Sequence[Sequence[str]], sections: Iterable[PairSection]
+    title: str, names: Sequence[str], table_rows: Sequence[Sequence[str]], sections: Iterable[PairSection]
 ) -> str:
-    """Return the HTML of the page: a table of figures, then sections of units with their differences marked.
+    """Return the HTML of the page: a table, then sections of units with their differences marked.
 
-    ``names`` are the names of the two networks. ``figures`` are rows of cells; the first row is the header.
+    ``names``: the names of the two networks.
+    ``table_rows``: the cells of each row of the table; the first row is the header.
     """
     style = web_text("colours_light.css") + web_text("colours_dark.css") + web_text("two_columns.css")
-    head, *rows = figures
-    table = _row_html("th", head) + "".join(_row_html("td", row) for row in rows)
+    header, *rows = table_rows
+    table = _row_html("th", header) + "".join(_row_html("td", row) for row in rows)
     columns = "".join(f"<p>{letter}: {_escape(name)}</p>" for letter, name in zip("AB", names, strict=True))
     body = f'<div class="pair">{columns}</div><table>{table}</table>'
     body += "".join(map(_section_html, sections))
@@ -69,7 +70,7 @@ def _pair_html(row: Row) -> str:
 
 
 def _difference_html(difference: UnitDifference) -> str:
-    """Return a difference in words, such as ``state chopped only in A``."""
+    """Return a difference in words as HTML, such as ``state <b>chopped</b> only in A``."""
     prefix = f"{_escape(difference.of)}: " if difference.of else ""
     sides = [f"<b>{_escape(name)}</b>" for name in (difference.a, difference.b) if name]
     location = (
@@ -81,9 +82,9 @@ def _difference_html(difference: UnitDifference) -> str:
 
 
 def _unit_html(unit: Unit | None, marked: set[tuple[str, str | None]]) -> str:
-    """Return the HTML of a unit; names in ``marked``, each with its kind, are bold.
+    """Return the HTML of a unit; for ``None``, an empty cell.
 
-    For ``None``, return an empty cell.
+    Names in ``marked``, pairs of a kind and a name, are bold.
     """
     if unit is None:
         return '<section class="none"></section>'

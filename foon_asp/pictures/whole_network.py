@@ -49,18 +49,20 @@ class WholeNetwork(Value, frozen=True):
         reached = reach(problem)
         objects, units = range(len(network.objects)), range(len(network))
         drawing = network_drawing(network, units, (), (), ())
-        by_name = network_coordinates(drawing)
-        positions = {box.unit if box.node is None else box.node: by_name[box.name] for box in drawing.boxes}
-        pairs = [positions[network.unit_number(u)] for u in units]
-        pairs += [positions.get(node, (0, 0)) for node in network.objects]  # some nodes are in no unit
+        coordinates_by_name = network_coordinates(drawing)
+        coordinates = {
+            box.unit if box.node is None else box.node: coordinates_by_name[box.name] for box in drawing.boxes
+        }
+        positions = [coordinates[network.unit_number(u)] for u in units]
+        positions += [coordinates.get(node, (0, 0)) for node in network.objects]  # some nodes are in no unit
         mentions = (mention_of(network, u) for u in units)
         return cls(
             nodes_of(network, objects),
             tuple(
-                PlacedUnit(each.id, each.motion, each.source, tuple(inputs), tuple(outputs))
-                for each, inputs, outputs in zip(mentions, network.inputs, network.outputs, strict=True)
+                PlacedUnit(mention.id, mention.motion, mention.source, tuple(inputs), tuple(outputs))
+                for mention, inputs, outputs in zip(mentions, network.inputs, network.outputs, strict=True)
             ),
-            tuple(round(number) for pair in pairs for number in pair),
+            tuple(round(number) for position in positions for number in position),
             tuple(sorted(problem.kitchen)),
             tuple(o for o in objects if reached.available[o]),
             tuple(sorted(reached.units)),

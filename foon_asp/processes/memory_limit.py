@@ -4,9 +4,9 @@ import contextlib
 
 
 def limit_own_memory(size: int | None) -> None:
-    """Limit the data segment of this process to ``size`` bytes, if the system can; ``None`` is no limit.
+    """Limit the data segment of this process to ``size`` bytes, if the system can; ``None`` removes a limit.
 
-    The parent process only polls the memory, which may grow too fast for that.
+    The parent process only polls the memory of this process. Memory may grow too fast for that.
     """
     try:
         import resource  # noqa: PLC0415 (not on every system)

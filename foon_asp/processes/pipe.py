@@ -31,14 +31,17 @@ def pack_message(value: object) -> bytes:
 
 
 def write(pipe: RawIOBase, content: bytes) -> None:
-    """Write all bytes; raises ``OSError`` if the other end is closed."""
+    """Write all of ``content``; raises ``OSError`` if the other end is closed."""
     unwritten = memoryview(content)
     while unwritten:
         unwritten = unwritten[pipe.write(unwritten) :]
 
 
 def write_if_open(pipe: RawIOBase, content: bytes) -> None:
-    """Write all bytes; do nothing if the other end is closed, which the reader of answers will notice."""
+    """Write all of ``content``. Do nothing if the other end is closed.
+
+    The thread that reads from the process notices that, too.
+    """
     with contextlib.suppress(OSError, ValueError):
         write(pipe, content)
 
@@ -66,8 +69,9 @@ def become_worker(read: Callable[[RawIOBase], T]) -> "tuple[queue.SimpleQueue[T]
     """Make this process a worker: return the queue of its requests, and the pipe for its answers.
 
     A thread reads requests from standard input, each by ``read``, into the queue. It ends the process once
-    its parent has ended, even during a computation. Answers go to what was standard output; anything else
-    that this process prints goes to standard error. Ctrl-C is ignored, since the parent handles it.
+    its parent has ended, even during a computation, and if memory runs out while it reads. Answers go to what
+    was standard output; anything else that this process prints goes to standard error. Ctrl-C is ignored,
+    since the parent handles it.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     incoming, answers = FileIO(os.dup(0), "rb"), FileIO(os.dup(1), "wb")
@@ -91,7 +95,7 @@ def become_worker(read: Callable[[RawIOBase], T]) -> "tuple[queue.SimpleQueue[T]
 
 
 def _read_exactly(pipe: RawIOBase, size: int) -> bytes:
-    """Read ``size`` bytes; raises ``EOFError`` if the pipe ends before."""
+    """Read and return ``size`` bytes; raises ``EOFError`` if the pipe ends or is closed before."""
     chunks: list[bytes] = []
     while size:
         try:

@@ -32,7 +32,8 @@ TaskFunctionMaker = Callable[[], Callable[[Task], Answer]]
 class LostError(Exception):
     """The process of a task died, or was killed at the time limit of the task.
 
-    ``code`` is its exit code; ``None`` after the time limit, when ``is_late`` is true.
+    ``code`` is its exit code, or minus the number of the signal that killed it. It is ``None`` after the time
+    limit; then ``is_late`` is true.
     """
 
     def __init__(self, code: int | None) -> None:
@@ -69,14 +70,15 @@ def run_in_processes(
     jobs: int,
     seconds: Callable[[Task], float | None] = lambda _: None,
 ) -> "Iterator[FinishedTask[Task, Answer]]":
-    """Run tasks in up to ``jobs`` child processes; yield each result as soon as it is there, in any order.
+    """Run tasks in up to ``jobs`` child processes; yield each task when it is finished, in any order.
 
-    Each process calls ``make_task_function`` once; the function that it returns does the tasks. ``seconds``
-    returns the time limit of a task, ``None`` for no limit. The time of the first task of a process begins
-    when ``make_task_function`` has returned.
+    ``make_task_function``: called once in each process; it returns the function that does the tasks.
+    ``seconds``: a function that returns the time limit of a task, or ``None`` for no limit. The time of the
+    first task of a process begins when ``make_task_function`` has returned.
 
-    If a process dies or exceeds the time, the result of its task is a :class:`LostError`, and another process
-    is started. All processes are ended when the iterator is closed.
+    An exception that a task raises is not raised here; it is in :attr:`FinishedTask.error`. If a process dies
+    or exceeds the time, the error of its task is a :class:`LostError`, and another process is started for the
+    next task. All processes are ended when the iterator is closed.
     """
     packed_maker, remaining_tasks, messages = pack_message(make_task_function), iter(tasks), _Messages()
     workers: dict[int, _Worker[Task]] = {}
@@ -125,7 +127,8 @@ _Messages = SimpleQueue[tuple[int, _Message]]  # with the number of the process 
 def _next_message(workers: "dict[int, _Worker[Any]]", messages: _Messages) -> tuple[int, _Message]:
     """Wait for a message of any worker, and return it with the number of the worker.
 
-    For a worker that died or exceeded the time of its task, the message is ``lost``.
+    If a worker exceeds the time of its task first, mark it as late and return the message ``lost`` for it. A
+    worker that died sends ``lost`` through its thread.
     """
     while True:
         worker_by_end = {
@@ -142,8 +145,11 @@ def _next_message(workers: "dict[int, _Worker[Any]]", messages: _Messages) -> tu
 class _Worker(PythonProcess, Generic[Task]):
     """A process that does tasks, and its current ``task``, which has to be finished by ``end_by``.
 
-    ``end_by`` is a time of the monotonic clock; ``None`` is no limit. ``packed_maker`` is the message with
-    the function that makes the task function. ``number`` identifies the process in ``messages``.
+    ``packed_maker``: the message with the function that makes the task function.
+    ``number``: identifies the process in ``messages``.
+    ``messages``: the queue of the messages of all processes.
+    ``end_by``: a time of the monotonic clock; ``None`` for no limit.
+    ``is_late``: whether it has exceeded this time.
     """
 
     def __init__(self, packed_maker: bytes, task: Task, number: int, messages: _Messages) -> None:
@@ -152,22 +158,23 @@ class _Worker(PythonProcess, Generic[Task]):
         self.is_late = False
         self.end_by: float | None = None
         self.start_thread(
-            write_if_open, self._out, packed_maker + pack_message(task)
+            write_if_open, self._to_process, packed_maker + pack_message(task)
         )  # waits until the process has started
-        self.start_thread(_queue_messages, self._in, number, messages)
+        self.start_thread(_queue_messages, self._from_process, number, messages)
 
     def start_timer(self, seconds: float | None) -> None:
-        """Start the time of the current task; ``None`` is no limit."""
+        """Start the time of the current task, which may take ``seconds``; ``None`` for no limit."""
         self.end_by = None if seconds is None else time.monotonic() + seconds
 
     def ask(self, task: Task, seconds: float | None) -> None:
-        """Send the process another task.
+        """Send the process another task, and start the time of this task.
 
-        If the process has died, ``lost`` is put into the queue of messages.
+        ``seconds`` is the time limit; ``None`` for no limit. If the process has died, its thread puts
+        ``lost`` into the queue of messages.
         """
         self.task = task
         self.start_timer(seconds)
-        write_if_open(self._out, pack_message(task))
+        write_if_open(self._to_process, pack_message(task))
 
 
 def _queue_messages(pipe: RawIOBase, number: int, messages: _Messages) -> None:
@@ -181,14 +188,15 @@ def _queue_messages(pipe: RawIOBase, number: int, messages: _Messages) -> None:
 def serve() -> None:
     """Run in a child process of a pool: do the tasks on standard input, until the parent process ends.
 
-    The first message is ``make_task_function``. Each later one is a task, which is answered by a message.
+    The first message is ``make_task_function``. When it has returned, a message ``ready`` is sent. Each later
+    message is a task, which is answered by a message.
     """
     received, answers = become_worker(receive_pickled)
-    work = _make_task_function(received.get())
+    do_task = _make_task_function(received.get())
     with contextlib.suppress(BrokenPipeError):  # the parent has ended
         send(answers, ("ready", None))
         while True:
-            write(answers, _answer_message(work, received.get()))
+            write(answers, _answer_message(do_task, received.get()))
 
 
 def _make_task_function(pickled_maker: bytes) -> Callable[[Any], Any]:
@@ -197,26 +205,29 @@ def _make_task_function(pickled_maker: bytes) -> Callable[[Any], Any]:
     If it raises an exception, return a function that raises this exception for every task.
     """
     try:
-        work: Callable[[Any], Any] = pickle.loads(pickled_maker)()
+        do_task: Callable[[Any], Any] = pickle.loads(pickled_maker)()
     except Exception as error:
         failure = error
 
-        def work(_: object) -> Any:
+        def do_task(_: object) -> Any:
             raise failure
 
-    return work
+    return do_task
 
 
-def _answer_message(work: Callable[[Any], Any], task: bytes) -> bytes:
-    """Do a pickled task; return a message with its answer, or with the exception that it raised."""
+def _answer_message(do_task: Callable[[Any], Any], task: bytes) -> bytes:
+    """Do a pickled task; return the message ``done`` with its answer.
+
+    If it raises an exception, return the message ``raised`` with this exception.
+    """
     try:
-        return pack_message(("done", work(pickle.loads(task))))
+        return pack_message(("done", do_task(pickle.loads(task))))
     except Exception as error:
         return pack_message(("raised", _picklable_error(error)))
 
 
 def _picklable_error(error: Exception) -> Exception:
-    """Return an error, or a :class:`BugError` with its text if the error cannot be pickled."""
+    """Return ``error``; if it cannot be pickled and unpickled, a :class:`BugError` with its type and text."""
     try:
         pickle.loads(pickle.dumps(error))
     except Exception:

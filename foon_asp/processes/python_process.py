@@ -23,16 +23,21 @@ _OWN_GROUP: dict[str, Any] = {"start_new_session": True}
 if sys.platform == "win32":
     _OWN_GROUP = {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP | subprocess.CREATE_NO_WINDOW}
 
-_all: "weakref.WeakSet[PythonProcess]" = weakref.WeakSet()
+_processes: "weakref.WeakSet[PythonProcess]" = weakref.WeakSet()
 
 
 class PythonProcess:
     """A child process that runs ``serve`` of a module, which reads standard input and writes standard output.
 
-    It has the module search path of this process, and never outlives it. ``options`` are options of Python,
-    and ``stderr`` is passed to :class:`subprocess.Popen`.
+    It has the module search path of this process, and never outlives it. Ctrl-C at a terminal does not reach
+    it.
 
-    Raises :class:`UserError` if the path of Python is unknown; the message begins with ``activity``.
+    ``module``: the name of the module.
+    ``activity``: the beginning of the message if the path of Python is unknown, such as ``work is shared``.
+    ``options``: options of Python.
+    ``stderr``: passed to :class:`subprocess.Popen`.
+
+    Raises :class:`UserError` if the path of Python is unknown.
     """
 
     def __init__(self, module: str, activity: str, *options: str, stderr: int | None = None) -> None:
@@ -51,11 +56,11 @@ class PythonProcess:
             stderr=stderr,
             **_OWN_GROUP,
         )
-        self._out = cast("RawIOBase", self._process.stdin)
-        self._in = cast("RawIOBase", self._process.stdout)
+        self._to_process = cast("RawIOBase", self._process.stdin)
+        self._from_process = cast("RawIOBase", self._process.stdout)
         self._group_ended = False  # or not ours: its number may be that of others by now
         self._threads: list[DaemonThread] = []
-        _all.add(self)
+        _processes.add(self)
 
     @property
     def is_alive(self) -> bool:
@@ -64,12 +69,16 @@ class PythonProcess:
             return self._process.poll() is None
 
     def start_thread(self, target: Callable[..., None], *arguments: object) -> None:
-        """Start a thread that reads from or writes to the process, and ends with it."""
+        """Start a thread that reads from or writes to the process; it has to end when the process ends."""
         self._threads = [thread for thread in self._threads if not thread.wait_for_end(0)]
         self._threads.append(DaemonThread(target, *arguments))
 
     def end(self) -> int:
-        """Kill the process and the processes that it has started; return its exit code."""
+        """Kill the process and the processes that it has started, and close the pipes; return its exit code.
+
+        The code is minus the number of the signal if a signal killed the process. Its threads get five
+        seconds to end.
+        """
         with uninterrupted():
             if hasattr(os, "killpg") and not self._group_ended:
                 with contextlib.suppress(OSError):
@@ -85,37 +94,41 @@ class PythonProcess:
     def wait_for_exit(self) -> int:
         """Wait for a process that has closed its output, and return its exit code.
 
-        It is killed if it does not end within five seconds.
+        If it does not end within five seconds, it is killed. Processes that it has started are killed in any
+        case.
         """
         with uninterrupted(), contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(5.0)
         return self.end()
 
     def abandon(self) -> None:
-        """Close the pipes, but let the process run: after a fork, it is a child of the parent."""
+        """Close the pipes, but let the process run.
+
+        This is for a copy of this program made by fork: the process is a child of the original.
+        """
         self._process.returncode = 0
         self._group_ended = True
         self._threads = []  # which a copy does not have
         self._close_pipes()
 
     def _close_pipes(self) -> None:
-        for pipe in (self._out, self._in):
+        for pipe in (self._to_process, self._from_process):
             with contextlib.suppress(OSError):
                 pipe.close()
 
 
 def _end_all() -> None:
     """Kill all processes, when this one ends."""
-    for process in list(_all):
+    for process in list(_processes):
         process.end()
 
 
-def _forget_all() -> None:
-    """Abandon all processes after a fork: they are children of the parent."""
-    for process in list(_all):
+def _abandon_all() -> None:
+    """Abandon all processes in a copy of this program made by fork: they are children of the original."""
+    for process in list(_processes):
         process.abandon()
 
 
 atexit.register(_end_all)
 if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_forget_all)
+    os.register_at_fork(after_in_child=_abandon_all)

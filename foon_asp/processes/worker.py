@@ -17,7 +17,7 @@ Message = tuple[str, Any]
 
 
 class DiedError(Exception):
-    """A process died while it answered a request, with an exit code."""
+    """A process died while it answered a request; ``code`` is its exit code, negative after a signal."""
 
     def __init__(self, code: int) -> None:
         super().__init__(f"ended with exit code {code}")
@@ -27,8 +27,9 @@ class DiedError(Exception):
 class Worker(PythonProcess):
     """A process in which ``serve`` of a module answers the requests on its standard input.
 
-    ``read`` reads a message from its output; by default, a message is a pickled kind and value.
-    ``has_spoken`` is true once a message has come.
+    ``module``, ``activity``, ``options``, ``stderr``: as for :class:`PythonProcess`.
+    ``read``: reads a message from its output; by default, a message is a pickled kind and value.
+    ``has_spoken``: whether a message has come.
     """
 
     def __init__(
@@ -43,7 +44,7 @@ class Worker(PythonProcess):
         self.has_spoken = False
         self._busy = False  # from a request until its answer, and after the end
         self._messages: queue.SimpleQueue[Message | None] = queue.SimpleQueue()
-        self.start_thread(_queue_messages, self._in, read, self._messages)
+        self.start_thread(_queue_messages, self._from_process, read, self._messages)
 
     @property
     def is_ready(self) -> bool:
@@ -55,17 +56,19 @@ class Worker(PythonProcess):
     ) -> Message:
         """Send a request, and return the first message of a kind without handler: the answer.
 
-        The values of messages before it, such as progress, are passed to the handler of their kind.
+        The values of messages before it, such as progress, are passed to the handler of their kind. The
+        memory of the process counts towards the limit of ``deadline``.
 
-        Raises :class:`LimitError` at a limit and at ctrl-C, :class:`DiedError` where the process died, and
-        what a handler raises; each of them ends the process.
+        Raises :class:`LimitError` at a limit and at ctrl-C, which stops the deadline. Raises
+        :class:`DiedError` if the process dies, and passes on what a handler raises. Each of them ends the
+        process. Raises :class:`BugError` for a process that is busy or was ended.
         """
         if self._busy:
             raise BugError("a process was asked that had been ended")
         self._busy = True
         deadline.count_memory_of(self._process.pid)
         try:
-            self.start_thread(write_if_open, self._out, request)
+            self.start_thread(write_if_open, self._to_process, request)
             while True:
                 kind, value = self._next_message(deadline)
                 if handlers is None or kind not in handlers:
@@ -83,11 +86,14 @@ class Worker(PythonProcess):
         return kind, value
 
     def tell(self, request: bytes) -> None:
-        """Send a request without an answer, short enough for the buffer of the pipe."""
-        write_if_open(self._out, request)
+        """Send a request without an answer; do nothing if the process has died.
+
+        The request has to be short enough for the buffer of the pipe. Otherwise this waits until it is read.
+        """
+        write_if_open(self._to_process, request)
 
     def _next_message(self, deadline: Deadline) -> Message:
-        """Wait for a message; raises :class:`DiedError` or :class:`LimitError`."""
+        """Wait for a message and return it; raises :class:`DiedError` or, at a limit, :class:`LimitError`."""
         while True:
             with contextlib.suppress(queue.Empty):
                 message = self._messages.get(timeout=max(0.001, deadline.seconds_to_next_check()))
@@ -98,12 +104,15 @@ class Worker(PythonProcess):
             deadline.check()
 
     def end(self) -> int:
-        """Kill the process; return its exit code."""
+        """Kill the process and the processes that it has started; return its exit code."""
         self._busy = True
         return super().end()
 
     def abandon(self) -> None:
-        """Close the pipes, but let the process run: after a fork, it is a child of the parent."""
+        """Close the pipes, but let the process run.
+
+        This is for a copy of this program made by fork: the process is a child of the original.
+        """
         self._busy = True
         super().abandon()
 
@@ -116,7 +125,10 @@ _idle: dict[Hashable, Any] = {}
 
 
 def take_worker(key: Hashable, start: Callable[[], W]) -> W:
-    """Return the idle worker of a key, which is then no longer idle; if there is none, start one."""
+    """Return the idle worker of a key, which is then no longer idle.
+
+    If there is none, or if it has died, return a new one, which ``start`` starts.
+    """
     worker: W | None = _idle.pop(key, None)
     if worker is not None and worker.is_ready:
         return worker
@@ -126,7 +138,10 @@ def take_worker(key: Hashable, start: Callable[[], W]) -> W:
 
 
 def give_back_worker(key: Hashable, worker: Worker) -> None:
-    """Make a worker the idle one of a key; kill it if it is not ready, or if the key has an idle worker."""
+    """Make a worker the idle one of a key.
+
+    Kill it if it is not ready, or if the key has another idle worker.
+    """
     if not worker.is_ready or _idle.setdefault(key, worker) is not worker:
         worker.end()
 

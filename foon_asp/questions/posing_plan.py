@@ -90,7 +90,7 @@ def listed_tree(
         goals = dataset.python_goal_ids(answer.goals)
     elif goals_named:
         goals = dataset.command_goal_ids(goals_named)
-    elif len(dataset.listed) == 1:
+    elif len(dataset.goal_entries) == 1:
         goals = dataset.command_goal_ids(())
     elif listed and ordered:
         goals = dataset.python_goal_ids(_goals_of_last_unit(listed[-1][0]))
@@ -98,7 +98,7 @@ def listed_tree(
         fault = "use(U) names no goal, and has no last step" if listed else "there is no step"
         raise UserError(f"{file}: {fault}; name a goal with --goal")
     problem = dataset.problem(goals, containers, items=used_up and used_up(goals))
-    if not goals_named and not answer.goals and (len(dataset.listed) != 1 or dataset.goals_from):
+    if not goals_named and not answer.goals and (len(dataset.goal_entries) != 1 or dataset.goals_from):
         goals_text = " + ".join(map(str, problem.goal_nodes))
         caller().reporter.warning(f"No --goal: using what the last step makes: {goals_text}")
     return Tree.given(problem, [unit for unit, _ in listed], [source for _, source in listed])

@@ -405,7 +405,7 @@ def view(
             if isinstance(about, Problem)
             else _drawing_without_goals(about, container_rule(rule), tree)
         )
-        if not drawing.units:
+        if not drawing.unit_count:
             raise UserError("the tree has no functional unit to draw")
         return View(None, picture=drawing)
     assert isinstance(about, Foon)

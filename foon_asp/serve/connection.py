@@ -52,7 +52,10 @@ class Connection(H11Protocol):  # type: ignore[misc]
 
     @property
     def waits(self) -> bool:
-        """Whether the connection waits for a request, or for the rest of one."""
+        """Whether the connection waits for a request, or for the rest of one.
+
+        It does not wait while a complete request is answered, nor when it is closing.
+        """
         cycle = self.cycle
         return not self.transport.is_closing() and (
             cycle is None or cycle.response_complete or cycle.more_body

@@ -53,7 +53,7 @@ class _EventReporter(Reporter):
         self.event({"kind": "progress", "text": f"found a tree: {costs_text(costs)}"})
 
     def bound(self, objective: Objective, bound: int | Fraction) -> None:
-        """Send a new lower bound as progress."""
+        """Send a new bound on the optimum as progress."""
         self.event({"kind": "progress", "text": bound_text(objective, bound)})
 
     def step(self, word: str, done: int, total: int) -> None:
@@ -99,12 +99,12 @@ class Desk:
     def opening_data(self) -> Json:
         """Return the data with which the page opens, by the names that its script reads.
 
-        These are the names to complete, the kitchen, the objectives, the conditions that are fixed, and the
-        first form.
+        These are the goals of the goals file, the kitchen, the objectives, the further answers to choose
+        from, the conditions that are fixed, and the opening form.
         """
         dataset = self._foon.dataset
         return {
-            "goals": [*entry_names(dataset.listed, dataset.names)],
+            "goals": [*entry_names(dataset.goal_entries, dataset.names)],
             "kitchen": sorted(str(dataset.names.node(o)) for o in dataset.kitchen),
             "objectives": [*Objective, *dataset.measures],
             "beside": [*PagePart],
@@ -117,13 +117,13 @@ class Desk:
         settings, stays_of, stock = self._settings, self._used_up.told, self._used_up.stock
         rules = (rule.name if isinstance(rule, Path) else str(rule) for rule in settings.constraints)
         encodings = [] if settings.encodings is None else [f"encodings: {settings.encodings.name}"]
-        counts = [f"stock: {node} {count}" for node, count in stock.items()]
-        return [*rules, *settings.constants, *encodings, *counts] + [
+        stock_texts = [f"stock: {node} {count}" for node, count in stock.items()]
+        return [*rules, *settings.constants, *encodings, *stock_texts] + [
             f"{'stays' if stays else 'goes'}: {name}" for name, stays in stays_of.items()
         ]
 
     def names_beginning(self, start: str) -> list[str]:
-        """Return up to 30 object nodes whose names begin with ``start``, in one-line notation."""
+        """Return up to 30 object nodes in one-line notation whose notation or label begins with ``start``."""
         names = self._foon.dataset.names
         return [str(names.node(o)) for o in nodes_beginning(start, names, 30)]
 
@@ -146,7 +146,8 @@ class Desk:
         """Answer the question of a form with pages, once the question before it has ended.
 
         ``token`` cancels the question. ``send_event`` receives an event for each page, for progress, for
-        warnings and for an error. A form without goals or objectives is an error.
+        warnings and for an error. Each page is kept. It is an error if the form has no goals or no
+        objectives. An error is sent, and not raised.
         """
 
         def answer(deadline: Deadline, _: _EventReporter) -> None:
@@ -172,7 +173,8 @@ class Desk:
     def _problem_of(self, form: Form) -> Problem:
         """Return the problem of a form, with the changes that the form makes to the kitchen.
 
-        If items are used up, the stock of the desk counts, without the items that the form removes.
+        If items are used up, the stock of the desk counts, without the items that the form removes, and so do
+        its exceptions of what stays.
         """
         foon = self._foon.vary(adding=form.adding, without=form.without)
         stock = stays = None
@@ -187,8 +189,14 @@ class Desk:
     def answer_regret(self, form: RegretForm, token: Cancel, send_event: SendEvent) -> None:
         """Send the regret of a unit or kitchen item: how much worse the optimum is without it.
 
-        It is sent as an event of kind ``without``. It is an error if the page of the form is no longer kept,
-        or if its tree is not proved optimal. ``token`` and ``send_event`` are as for :meth:`answer_form`.
+        It is sent as an event of kind ``without``, once the question before it has ended.
+
+        Errors are sent, and not raised:
+        - if the page of the form is no longer kept,
+        - if the tree of the page is not proved optimal, or
+        - if the problem has no such unit or item.
+
+        ``token`` and ``send_event`` are as for :meth:`answer_form`.
         """
 
         def answer(deadline: Deadline, reporter: _EventReporter) -> None:
@@ -196,19 +204,19 @@ class Desk:
             view, rules = self._kept_pages.get(form.page, (None, ()))
             if view is None or view.answer is None:
                 raise UserError("this page is no longer kept: ask again")
-            best, network = view.answer, view.answer.problem.network
-            if best.status is not Status.OPTIMAL:
+            best_answer, network = view.answer, view.answer.problem.network
+            if best_answer.status is not Status.OPTIMAL:
                 raise UserError("the tree is not proved best")
             unit = None if form.unit is None else network.unit_of_number(form.unit)
-            named = (o for o in best.problem.kitchen if str(network.objects[o]) == form.item)
-            item = next(named, None)
+            matching_items = (o for o in best_answer.problem.kitchen if str(network.objects[o]) == form.item)
+            item = next(matching_items, None)
             if unit is None and item is None:
                 raise UserError("the tree has nothing of that kind")
             settings = self._settings._replace(constraints=rules, deadline=deadline)
-            regret = regret_of(best, settings, unit, item)
-            text = regret.loss_text(best.objectives[0])
+            regret = regret_of(best_answer, settings, unit, item)
+            text = regret.loss_text(best_answer.objectives[0])
             if regret.costs is not None:
-                text += f"; the best is then {costs_text(regret.costs, best.objectives)}"
+                text += f"; the best is then {costs_text(regret.costs, best_answer.objectives)}"
             reporter.event({"kind": "without", "text": text})
 
         self._run_question(answer, token, send_event)
@@ -228,7 +236,8 @@ class Desk:
     ) -> None:
         """Call ``answer`` with a deadline and a reporter, once the question before it has ended.
 
-        Any error is sent as an event.
+        Any error, and a stop before any answer, is sent as an event and not raised. Positions in the event
+        are those in the rules of the page.
         """
         positions, reporter = [], _EventReporter(send_event)
         try:

@@ -18,8 +18,8 @@ class Form(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     ``goals``, ``objectives``: their names; the first objective counts most.
     ``containers``: the container rule.
-    ``items``: whether items are ``lasting`` or used up.
-    ``adding``, ``without``: kitchen items to add and to remove.
+    ``items``: ``lasting`` or ``used-up``.
+    ``adding``, ``without``: names of kitchen items to add and to remove.
     ``rules``: the text of rules.
     ``beside``: further answers that the page shows.
     """
@@ -50,10 +50,13 @@ class RegretForm(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
             raise ValueError("expected a unit or an item")
 
 
-def read_question(text: bytes, kind: type[Question]) -> Question:
-    """Return the form that JSON text states, of type ``kind``; raises :class:`UserError` for invalid text."""
+def read_question(text: bytes, form_type: type[Question]) -> Question:
+    """Return the form that JSON text states, of type ``form_type``.
+
+    Raises :class:`UserError` for text that is no such form, also if a key stands twice in an object.
+    """
     try:
-        return msgspec.convert(read_json(text, _object_without_repeats), kind)
+        return msgspec.convert(read_json(text, _object_without_repeats), form_type)
     except ValueError as error:
         raise UserError(f"found what is no question: {error}") from None
 

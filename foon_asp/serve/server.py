@@ -12,9 +12,9 @@ from foon_asp.serve.site import web_application
 
 
 def serve_desk(desk: Desk, ready: Callable[[str], object]) -> None:
-    """Serve the page of a desk until ctrl-C, and then cancel the current question.
+    """Serve the page of a desk until ctrl-C, and then cancel the current question and return.
 
-    ``ready`` is called with the address once the server accepts connections.
+    ``ready`` is called with the address before the server runs; connections are queued from then on.
     """
     token = secrets.token_urlsafe(24)
     with socket.socket() as listener:

@@ -61,7 +61,7 @@ def web_application(desk: Desk, token: str, port: int) -> Asgi:
         return HTMLResponse(page, headers={"content-security-policy": "frame-ancestors 'self'"})
 
     def list_names(request: Request) -> Response:
-        """Return the names that begin with a text, as JSON."""
+        """Return up to 30 names that begin with the text in the query, as JSON."""
         return JSONResponse(desk.names_beginning(request.query_params.get("start", "")))
 
     async def ask_question(request: Request) -> Response:
@@ -127,8 +127,9 @@ def _refusal_status(
 ) -> int | None:
     """Return the HTTP status with which a request is refused; ``None`` for an authorized one.
 
-    It is 421 for another host, 404 without the token, and 403 for a request from another site or a body that
-    is not JSON. ``headers`` are lists of values by names in small letters.
+    It is 421 for another host, 403 for a request from another site, and 404 without the token. It is also 403
+    for a POST that does not name its site, or whose body is not JSON. ``headers`` are lists of values by
+    names in small letters.
     """
     if headers.get("host") != [host]:
         return 421
@@ -149,7 +150,10 @@ async def _stream_events(
 
     ``read`` returns, from the body of the request, the function that answers the question. Before the
     question begins, the current one is cancelled. The question runs in a thread, and is cancelled when the
-    connection is closed. A body that is too long or no question gets an error as a response.
+    connection is closed.
+
+    A body of more than 1,000,000 bytes is answered with status 413, and one that is no question with status
+    400.
     """
     body = b""
     async for chunk in request.stream():

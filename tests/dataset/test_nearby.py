@@ -90,7 +90,7 @@ def two_ways(folder: Path) -> Dataset:
 
 def test_what_is_taken_to_be_at_hand_is_in_no_answer(tmp_path: Path) -> None:
     dataset = two_ways(tmp_path)
-    near = asked(dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", first=1))
+    near = asked(dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", units_at_first=1))
     assert len(near.problem.network) == 2  # both ways, one unit each
     free = solve(near.relaxation)
     assert free.units is not None
@@ -112,7 +112,7 @@ def test_a_limit_gives_no_tree_that_may_not_be_one(tmp_path: Path, monkeypatch: 
 
     monkeypatch.setattr(nearby_optimum, "solve", stopped)
     dataset = two_ways(tmp_path)
-    near = asked(dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", first=1))
+    near = asked(dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", units_at_first=1))
     found = answer_from_store(near, [Objective.UNITS], Settings(deadline=Deadline(1)))
     assert (found.status, found.units, found.costs) == (Status.UNKNOWN, None, None)
     assert found.outcome.bounds[Objective.UNITS] == 1
@@ -125,7 +125,7 @@ def test_a_limit_gives_a_tree_of_what_was_read_and_the_bound(
         raise LimitError(Deadline(0))
 
     dataset = two_ways(tmp_path)
-    near = asked(dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", first=5))
+    near = asked(dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", units_at_first=5))
     monkeypatch.setattr(Nearby, "grow", stopped)
     monkeypatch.setattr(Deadline, "watched", lambda *given, **late: nullcontext())
     found = answer_from_store(near, [Objective.UNITS], Settings())
@@ -133,7 +133,7 @@ def test_a_limit_gives_a_tree_of_what_was_read_and_the_bound(
     assert (found.status, found.proof, found.costs.units) == (Status.FEASIBLE, None, 3)
     assert found.outcome.bounds[Objective.UNITS] == 2  # the last two units of the longer way
     assert found.stopped is not None
-    near = asked(dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", first=1))
+    near = asked(dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", units_at_first=1))
     found = answer_from_store(near, [Objective.UNITS], Settings())
     assert (found.status, found.proof, found.units) == (Status.UNKNOWN, None, None)
     assert found.outcome.bounds[Objective.UNITS] == 1
@@ -157,7 +157,7 @@ def test_at_a_limit_the_tree_of_the_fewest_units_is_one_that_keeps_to_the_rules(
 
     monkeypatch.setattr(nearby_optimum, "solve", stopped)
     dataset = two_ways(tmp_path)
-    near = asked(dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", first=1))
+    near = asked(dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", units_at_first=1))
     how = Settings((Path("before"),), constants=("earlier_motion=serve", "later_motion=plate"))
     found = answer_from_store(near, [Objective.INPUTS], how)
     assert (found.stopped, found.proof) == ("a limit", None)
@@ -191,7 +191,7 @@ def test_a_limit_keeps_the_bound_of_what_was_asked_before(
 
     monkeypatch.setattr(nearby_optimum, "solve", stopped)
     dataset = two_ways(tmp_path)
-    near = asked(dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", first=1))
+    near = asked(dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", units_at_first=1))
     found = answer_from_store(near, [Objective.UNITS], Settings(rules))
     assert looks >= 4
     assert found.stopped == "a limit"
@@ -223,7 +223,7 @@ def test_where_rules_leave_no_tree_that_is_said_even_at_a_limit(
         raise LimitError(Deadline(0))
 
     dataset = two_ways(tmp_path)
-    near = asked(dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", first=1))
+    near = asked(dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", units_at_first=1))
     if limited:
         monkeypatch.setattr(Nearby, "grow", stopped)
     forbidden = Settings(
@@ -273,7 +273,7 @@ def test_random_problems(
             *((o,) for o in random.Random(seed).sample(range(len(problem.network.objects)), 3)),
         }:
             for objectives in LISTS:
-                near = near_of(dataset.nearby(goals, rule.value, first=1))
+                near = near_of(dataset.nearby(goals, rule.value, units_at_first=1))
                 if near is None:
                     continue
                 before = len(near.problem.network)
@@ -344,7 +344,7 @@ def test_random_problems_under_rules(rule: ContainerRule, part: int, tmp_path: P
         if not hold_for_subtrees(how):
             continue
         dataset = stored(problem, tmp_path)
-        near = near_of(dataset.nearby(problem.goals, rule.value, first=1))
+        near = near_of(dataset.nearby(problem.goals, rule.value, units_at_first=1))
         if near is None:
             continue
         objectives = rng.choice(LISTS)
@@ -385,7 +385,7 @@ def test_random_problems_under_rules_that_see_the_kitchen(part: int, tmp_path: P
         problem = replace(random_problem(seed, rule, units=14, readable=True), unit_prices=None)
         made = sorted(set(reach(problem).makers) - problem.kitchen)
         goals = (rng.choice(made or problem.goals),)
-        posed = stored(problem, tmp_path).nearby(goals, rule.value, first=1)
+        posed = stored(problem, tmp_path).nearby(goals, rule.value, units_at_first=1)
         objectives, whole = rng.choice(LISTS), replace(problem, goals=goals)
         free = solve(whole, objectives)
         motions = [problem.network.motions[unit] for unit in free.units or ()]
@@ -431,7 +431,7 @@ def test_rules_see_the_kitchen_as_it_is(
 ) -> None:
     """What units that were not read may make is no item of the kitchen, nor is it there too early."""
     dataset = two_ways(tmp_path)
-    problem = dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", first=1)
+    problem = dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", units_at_first=1)
     monkeypatch.setattr(Nearby, "full_problem", None)
     found = answer_under_rules(problem, [Objective.UNITS], Settings((rule,), constants=constants))
     assert found.status is Status.OPTIMAL

@@ -63,7 +63,7 @@ def near_stew(
     )
     import_files(files, folder / "stew.foon")
     dataset = read_store(DataFiles((folder / "stew.foon",)), 3)
-    return dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", first=first)
+    return dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", units_at_first=first)
 
 
 def read_little(problem: Problem) -> bool:
@@ -382,7 +382,7 @@ def test_random_problems_under_rules(part: int, tmp_path: Path, monkeypatch: pyt
         dataset = stored(problem, tmp_path)
         objectives = rng.choice(LISTS)
         order = levels(objectives)
-        posed = dataset.nearby(problem.goals, rule.value, first=1)
+        posed = dataset.nearby(problem.goals, rule.value, units_at_first=1)
         if not isinstance(posed, NearbyProblem):
             continue
         # a poor first tree, and little that may be read besides: without these, all is found near

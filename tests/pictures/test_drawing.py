@@ -180,7 +180,7 @@ def test_what_is_too_large_to_be_laid_out_is_refused() -> None:
     whole = draw_network(enumerate(units * (MAX_UNITS // 300 + 1)), (), (), CAPTION)
     with pytest.raises(UserError, match=r"a network of .* \(--goal, --unit\), or write GraphML"):
         svg_picture(whole)
-    assert graphml_text(whole).count("<edge ") == whole.units
+    assert graphml_text(whole).count("<edge ") == whole.unit_count
 
 
 def test_a_large_network_is_one_picture_of_all_its_nodes() -> None:

@@ -147,7 +147,7 @@ def test_prices_that_cannot_be_told_and_constants_that_nothing_has_are_refused()
 def test_parts_of_stores_are_asked_about_without_clingo(tmp_path: Path) -> None:
     """But not where the rest of the rules does not see all that is taken to be at hand."""
     problem = drawn(5)[0]
-    near = near_of(stored(problem, tmp_path).nearby((0,), "strict", first=1))
+    near = near_of(stored(problem, tmp_path).nearby((0,), "strict", units_at_first=1))
     assert near is not None
     prices = problem.unit_prices
     part, relaxed = (replace(each, unit_prices=prices) for each in (near.problem, near.relaxation))

@@ -65,7 +65,7 @@ def test_the_notation_of_any_node_is_one_line_and_is_read_back(node: ObjectNode)
 @steady
 def test_a_printed_node_is_found_as_goal(nodes: list[ObjectNode]) -> None:
     foon = built(nodes)
-    names, listed = foon.dataset.names, foon.dataset.listed
+    names, listed = foon.dataset.names, foon.dataset.goal_entries
     for node in nodes:
         assert names.node(find_goal(str(node), names, listed)) == node
         assert foon.problem(str(node)).goal_nodes == (node,)
