@@ -395,8 +395,9 @@ class Dataset:
     ) -> "Dataset":
         """Return the same data with some success rates and some prices replaced or added.
 
-        ``rates`` are by motion, ``unit_prices`` by motion or unit. ``None`` for one of them keeps all. Raises
-        :class:`UserError` as :func:`changed_rates` and :func:`changed_prices` do.
+        ``rates`` are by motion, ``unit_prices`` by motion or unit. ``None`` for one of them keeps all. A
+        kitchen that was assumed still counts as assumed. Raises :class:`UserError` as :func:`changed_rates`
+        and :func:`changed_prices` do.
         """
         if rates is None and unit_prices is None:
             return self
@@ -405,7 +406,8 @@ class Dataset:
             listed_prices = UnitPrices(motions or {}, units)
             motions, units = changed_prices(listed_prices, unit_prices, self.motions, self.names)
             prices = prices._replace(motions=motions, units=units)
-        return self._with_fields(rates=changed_rates(self.rates, rates, self.motions), prices=prices)
+        changed = changed_rates(self.rates, rates, self.motions)
+        return self._with_fields(rates=changed, prices=prices, has_kitchen=self.has_kitchen)
 
     def vary(self, changes: Changes) -> "Dataset":
         """Return the same data with changes, as :meth:`foon_asp.Foon.vary` does.

@@ -51,6 +51,14 @@ def test_a_network_of_plain_values() -> None:
     assert list(tea.network) == list(foon_asp.build(tea.network, kitchen="@starting").network)
 
 
+def test_other_rates_and_prices_do_not_hide_that_the_kitchen_is_assumed() -> None:
+    with pytest.warns(FoonWarning, match="No kitchen given"):
+        foon = foon_asp.build([("boil", "water; cold", "water; hot")], rates={"boil": 0.5})
+    varied = foon.vary(rates={"boil": 0.9}, unit_prices={"boil": 2})
+    assert any("No kitchen given" in warning for warning in varied.warnings)
+    assert not foon.vary(kitchen=["water; cold"]).warnings
+
+
 @pytest.mark.parametrize(
     ("units", "message"),
     [
