@@ -103,6 +103,7 @@ class Envelope:
         The distant rate to the power of ``degree`` is ``raised_rate``. A tree that is better there gives the
         next rate to try, which is nearer to the present one, and so on. At degree 0, the motion has the rate
         ``raised_rate`` and all others have 1, so that the tree with the fewest units of the motion is found.
+        An end is not proved if the last search reached a limit.
         """
         tree = self._as_function(motion, self._tree)
         rate = Root(1, (self._problem.rates or {})[motion])

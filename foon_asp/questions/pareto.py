@@ -329,7 +329,10 @@ def pareto(
 def _front_points(
     problem: Problem, objectives: Sequence[Objective], points: Sequence[_FoundTree]
 ) -> Iterator[Point]:
-    """Yield a point of the front for each tree, with the units that change from the previous tree."""
+    """Yield a point of the front for each tree, with the units that change from the previous tree.
+
+    The first tree has no changes.
+    """
     before: CostedTree | None = None
     for units, costs in points:
         tree = costed_tree(problem, units, costs)

@@ -118,7 +118,7 @@ class Question:
         self.command = command
 
     def format_of(self, file: Path) -> str:
-        """Return the format that the ending of a file name stands for; raises :class:`UserError` if none."""
+        """Return the format of a file name by its ending, in any case; raises :class:`UserError` if unknown."""
         format_ = self.suffixes.get(file.suffix.lower())
         if format_ is None:
             ends = " ".join(self.suffixes)

@@ -219,7 +219,7 @@ def regret(
 
         ``parts`` name what is left out, as parameters of :func:`_regret_of_parts`. Without rules, raises
         :class:`BugError` if the optimum is better without the part. This is not checked by ``kitchen``
-        without an item.
+        without an item. If a limit or ctrl-C stops ``leave_out``, the status of the regret is ``UNKNOWN``.
         """
         try:
             with settings.effective_deadline.watched(
@@ -255,7 +255,8 @@ def regret(
 def regret_of(best: Answer, settings: Settings, unit: int | None = None, item: int | None = None) -> Regret:
     """Return the regret of one unit or one kitchen item, which is given by id.
 
-    The problem of the answer ``best`` is solved without it.
+    The problem of the answer ``best`` is solved without it. Progress and warnings are not reported. Give
+    either the unit or the item.
     """
     network, outcome = best.problem.network, best.outcome
     if unit is not None:
