@@ -30,7 +30,7 @@ def pose_plan(
 
     ``named`` has one entry: the file, by the name of the question's parameter. Goals, a container rule and
     amounts of goals on the command line override those that an answer in the file states. The data are those
-    of :func:`data_for_trees`. This function may add the file to the networks of the command. If items last, the
+    of :func:`data_for_trees`, which may add the file to the networks of the command. If items last, the
     amounts of the answer are ignored.
     """
     (plan,) = named.values()

@@ -446,7 +446,8 @@ def _known_durations(
     """Return the known durations by motion, for the motions of a plan and those that are ``stated``.
 
     A stated duration comes first. Then, with ``from_video``, comes the median of the video clips of the
-    motion, and then the ``default``. Warnings name the motions that have a median or the default.
+    motion, and then the ``default``. Warnings name the motions that have a median or the default. With
+    ``from_video``, the whole network is read; files of clips that do not exist are skipped.
     """
     durations = stated_durations(stated)
     motions = dict.fromkeys(unit.motion for unit in tree.units)
@@ -479,7 +480,8 @@ def _known_durations(
 def _tool_counts(stated: Tools | None) -> dict[ToolName, int | None]:
     """Return the stated numbers of tools by label or node; ``None`` for an unlimited number.
 
-    They are read from a file, or checked. Raises :class:`UserError` for a wrong number or label.
+    They are read from a file, or checked. Raises :class:`UserError` for a wrong number or label. If
+    ``stated`` is ``None``, the result is empty.
     """
     if stated is None:
         return {}

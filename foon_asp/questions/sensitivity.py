@@ -168,7 +168,7 @@ class Sensitivity(WithAnswer, frozen=True, kw_only=True, tag=schema_name("sensit
     def _cells(self, interval: RateInterval) -> tuple[str, ...]:
         """Return the row of a motion: rate, both ends of the interval, name, and the trees beyond them.
 
-        An end that is not proved has a question mark.
+        An end that is not proved has a question mark. An end that no rate forms is 0 or 1.
         """
         best, ends, beyond = self.answer.units or (), [], []
         for end, limit in ((interval.below, "0"), (interval.above, "1")):
@@ -218,7 +218,8 @@ def sensitivity(problem: Problem, **options: Unpack[CommonOptions]) -> Sensitivi
         The best tree as the ``answer``, and an interval for each motion, the one with the nearest end first.
 
     Raises:
-        UserError: for a wrong argument or constraint, for rates not given, or for rules about ``risk/2``.
+        UserError: for a wrong argument or constraint, for rates not given, for replaced encodings, or for rules
+            about ``risk/2``.
 
     Example:
         >>> found = foon_asp.sensitivity(foon_asp.load().problem("macaroni"))

@@ -87,7 +87,8 @@ def _goals_by_unit(problem: Problem, units: Sequence[int]) -> dict[int, list[int
     """Return, for each unit of a tree, the ids of the goals that it is needed for.
 
     ``units`` are in an order that executes. A goal needs its first achiever in this order, the first
-    achievers of the inputs of that unit, and so on.
+    achievers of the inputs of that unit, and so on. Nodes of the kitchen need no unit. A unit that no goal
+    needs has an empty list.
     """
     achievers: dict[int, int] = {}
     for unit in units:

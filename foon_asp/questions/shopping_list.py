@@ -390,7 +390,8 @@ class _Lists(NamedTuple):
 def _with_bought_items(problem: Problem, bought: Mapping[int, int]) -> Problem:
     """Return the problem with bought items in its kitchen; ``bought`` has the copies by id of the node.
 
-    Where items are used up, the copies are added to the stock.
+    Where items are used up, the copies are added to the stock. The stock that is stated of a node outside the
+    kitchen does not count.
     """
     kitchen = problem.kitchen.union(bought)
     if problem.items is None:
@@ -542,7 +543,8 @@ class _Shopper:
     def lists(self, max_lists: int) -> _Lists:
         """Return up to ``max_lists`` lists, the cheapest first; at a limit, those found by then.
 
-        If nothing has to be bought, the only list is empty.
+        If nothing has to be bought, the only list is empty. If ``max_lists`` lists are found, others are not
+        ruled out, so the lists are not complete.
         """
         if not self._search_without(frozenset(), caller().reporter):
             return _Lists(self._chosen_lists, complete=False)
@@ -624,7 +626,8 @@ def _lists_under_rules(
     ``sold`` are prices by id of the node. Of equally cheap lists, clingo prefers those without
     ``second_choices``, which are mixtures and nodes that units make. If trees are ``compared``, the caller
     chooses among equally cheap lists by their trees: so up to 30 lists are found, as long as they cost as
-    much as list number ``max_lists``. Raises :class:`UserError` for prices beyond 32 bits.
+    much as list number ``max_lists``. Raises :class:`UserError` for prices beyond 32 bits. An empty list ends
+    the search, since nothing has to be bought.
     """
     scale = math.lcm(*(price.denominator for price in sold.values()))
     if any(price * scale > INT32_MAX for price in sold.values()):

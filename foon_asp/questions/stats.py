@@ -321,7 +321,7 @@ def _list_units(
     """Return the units with the given ids in the whole network, or all units if there are no ids.
 
     If ``explains``, each input says whether it stays. ``stays`` overrides this for labels and nodes. Raises
-    :class:`UserError` for unknown ids.
+    :class:`UserError` for unknown ids. It is also raised if inputs are to be explained below level 3.
     """
     items = items_of(dataset, "used-up", None, stays) if explains else None
     network = (dataset.data_part((), numbers)[0] if numbers else dataset.data).network
@@ -337,7 +337,7 @@ def _explained_unit(
     """Return a unit, by id, as a value.
 
     ``items`` says how items are used up: each input then says whether it stays and why. If it is ``None``,
-    inputs say nothing of this.
+    inputs say nothing of this. An input that the container rule implies stays.
     """
     plain, value = unit_of(network, unit), network.unit(unit)
     needed = set() if items is None else set(needed_inputs(value, rule, utensils, network))

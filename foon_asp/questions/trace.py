@@ -353,6 +353,7 @@ def _problem_from_state(problem: Problem, copies: dict[ObjectNode, int]) -> Prob
 
     ``copies`` has the number of copies by node in this state. If items last, these nodes are added to the
     kitchen. If items are used up, the copies are the stock, and nodes that never run out stay available.
+    Nodes that the network lacks are not added to the kitchen.
     """
     problem = problem.whole
     network = problem.network
