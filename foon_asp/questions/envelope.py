@@ -85,11 +85,11 @@ class Envelope:
             tiny = _TINY if rate > _TINY else rate * _TINY
             end = self._end_from(motion, 1, tiny)
             # a tree with fewer units of the motion wins below some rate: below this one, if it has all others
-            everything = self._as_function(motion, tuple(self._units))
+            tree_of_all_units = self._as_function(motion, tuple(self._units))
             if (
                 end.at is None
                 and end.proved
-                and everything.factor <= self._as_function(motion, self._tree).factor * tiny
+                and tree_of_all_units.factor <= self._as_function(motion, self._tree).factor * tiny
             ):
                 end = self._end_from(motion, 0, Fraction(1, 2))
             return end

@@ -247,8 +247,8 @@ def helped_trees(
     except KeyboardInterrupt:
         if not rows:
             raise
-    costs = with_any_help is not None and with_any_help.status in _PROVED and with_any_help.costs
-    return HelpedTrees(tuple(rows), costs.success if costs else None, complete)
+    greatest_costs = with_any_help is not None and with_any_help.status in _PROVED and with_any_help.costs
+    return HelpedTrees(tuple(rows), greatest_costs.success if greatest_costs else None, complete)
 
 
 def _order_key(outcome: Outcome) -> tuple[int | Fraction, ...]:

@@ -324,7 +324,7 @@ def trace(
     network = tree.problem.network
     replay = replay_for(replayable_problem(tree.problem, tree), tree)
     states = tuple(_copies_after_steps(tree.problem, replay))
-    lack, answer = replay.shortage, None
+    shortage, answer = replay.shortage, None
     if failed is not None:
         if not 1 <= failed <= len(replay.steps):
             last = len(replay.steps)
@@ -341,7 +341,7 @@ def trace(
     traced = Traced(
         **question_fields(tree.problem),
         executed=tuple(executed),
-        stopped=None if lack is None else tree.lack_text(lack_of(network, lack)),
+        stopped=None if shortage is None else tree.lack_text(lack_of(network, shortage)),
         failed=failed,
         answer=answer,
     )
