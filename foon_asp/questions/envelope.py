@@ -159,7 +159,8 @@ class Envelope:
     def _solve_varied(self, varied: Problem) -> tuple[Outcome, bool]:
         """Return the optimum at other rates, and whether it is better than the best tree of the envelope.
 
-        Raises :class:`BugError` if a proved optimum is worse than this tree.
+        After a limit, the outcome is the best tree found, if any. Raises :class:`BugError` if a proved
+        optimum is worse than the tree of the envelope.
         """
         outcome = solve(varied, _SUCCESS, self._settings, Reporter())
         tree_success = _success(varied.costs(self._tree))
@@ -184,7 +185,10 @@ class Envelope:
 
 
 def _at_rate(problem: Problem, motion: str, degree: int, raised_rate: Fraction) -> Problem:
-    """Return a problem with all rates to the power of ``degree``, and ``raised_rate`` for the motion."""
+    """Return a problem with all rates to the power of ``degree``, and ``raised_rate`` for the motion.
+
+    Units with own rates keep these, to the power. User rules see the rates as given.
+    """
     raised = {name: rate**degree for name, rate in (problem.rates or {}).items()}
     own_rates = {unit: rate**degree for unit, rate in problem.own_rates.items()}
     return replace(problem, rates=raised | {motion: raised_rate}, own_rates=own_rates, as_seen=problem)

@@ -201,11 +201,11 @@ def helped_trees(
 ) -> HelpedTrees:
     """Find the best trees with help for 0, 1, 2, ... units.
 
-    ``person`` has the person's rates by motion; ``None`` for a person who never fails. The rows end with
-    ``max_helped`` units, with the first tree whose success is at least ``wanted``, or where more help changes
-    nothing. ``None`` for either lifts its condition. At a limit or ctrl-C, the rows end early, and the last
-    may be unproved. An unproved row repeats the tree of the row before if no better one was found. Ctrl-C
-    before the first row is raised.
+    ``person`` has the person's rates by motion; ``None`` for a person who never fails. The person takes over
+    only motions with a higher rate than the robot's. The rows end with ``max_helped`` units, with the first
+    tree whose success is at least ``wanted``, or where more help changes nothing. ``None`` for either lifts
+    its condition. At a limit or ctrl-C, the rows end early, and the last may be unproved. An unproved row
+    repeats the tree of the row before if no better one was found. Ctrl-C before the first row is raised.
 
     Raises :class:`UserError` for wrong rules, and for rules that look beyond the tree and at who does a unit.
     """

@@ -154,22 +154,22 @@ class Front(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("pare
 
         Without a point, the line says that no tree exists, or that a limit came first.
         """
-        rule = self.conditions
+        conditions = self.conditions
         if self.encodings is not None:
-            rule += f", as {self.encodings} has it"
+            conditions += f", as {self.encodings} has it"
         if not self.points and self.complete:
-            return f"infeasible: proved that no task tree exists ({rule})"
+            return f"infeasible: proved that no task tree exists ({conditions})"
         if not self.points:
-            return f"unknown: stopped at a limit before any point of the front was found ({rule})"
+            return f"unknown: stopped at a limit before any point of the front was found ({conditions})"
         *first, last = self.objectives
         by = f"{', '.join(first)} and {last}"
         points = counted(len(self.points), "point")
         if not self.complete:
-            return f"at least {points} on the Pareto front of {by} ({rule}; stopped at a limit)"
+            return f"at least {points} on the Pareto front of {by} ({conditions}; stopped at a limit)"
         if len(self.points) == 1:
             every = "both" if len(self.objectives) == 2 else "each"
-            return f"1 point on the Pareto front of {by}, one tree being the best by {every}: proved ({rule})"
-        return f"{points} on the Pareto front of {by}, and no others: proved ({rule})"
+            return f"1 point on the Pareto front of {by}, one tree being the best by {every}: proved ({conditions})"
+        return f"{points} on the Pareto front of {by}, and no others: proved ({conditions})"
 
     def _points_table(self) -> Table:
         """Return a row for each point: its number, its measures, and the motions that go and come."""

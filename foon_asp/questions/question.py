@@ -229,7 +229,8 @@ def _complete_option(option: Option, parameter: inspect.Parameter, texts: Mappin
     """Return an option with its missing name, default, help and type filled in from its parameter.
 
     ``texts`` are the entries of the docstring by parameter; the help is the first sentence. An option that
-    has a name is shared by questions, and only its default is changed.
+    has a name is shared by questions, and only its default is changed. A parameter of type ``bool`` makes a
+    flag, and one of type ``int`` takes a whole number.
     """
     if option.name:  # an option shared by questions, whose default may differ
         default = parameter.default if isinstance(parameter.default, str | int) else option.default

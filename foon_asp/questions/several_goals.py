@@ -50,7 +50,8 @@ def with_goals_apart(answer: Answer, settings: Settings, posed: Problem) -> Answ
 def _solve_apart(answer: Answer, settings: Settings, posed: Problem) -> list[Outcome]:
     """Return the best outcome for each goal by itself, in the order of the goals.
 
-    Without rules, raises :class:`BugError` if one goal alone costs more than all goals together.
+    Without rules, raises :class:`BugError` if one goal alone costs more than all goals together. ``posed`` is
+    that of :func:`with_goals_apart`. Nothing is reported to the caller.
     """
     together, problem, objectives = answer.outcome, answer.problem, answer.objectives
     if isinstance(posed, NearbyProblem):

@@ -271,7 +271,10 @@ class Explanation(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name
                 yield f"    for {stand_in.stands_in_for}"
 
     def _fix_line(self) -> str:
-        """Return one line on which nodes to add to the kitchen, or on how to find them."""
+        """Return one line on which nodes to add to the kitchen, or on how to find them.
+
+        Up to four nodes are named, and the others counted.
+        """
         if self.fix is None:
             return "foon-asp shopping-list with the same options says what to add to the kitchen"
         named = [str(node) for node in self.fix[: _MAX_SHOWN.fix_items]]
