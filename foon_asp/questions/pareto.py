@@ -168,7 +168,8 @@ class Front(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("pare
             return f"at least {points} on the Pareto front of {by} ({conditions}; stopped at a limit)"
         if len(self.points) == 1:
             every = "both" if len(self.objectives) == 2 else "each"
-            return f"1 point on the Pareto front of {by}, one tree being the best by {every}: proved ({conditions})"
+            claim = f"1 point on the Pareto front of {by}, one tree being the best by {every}: proved"
+            return f"{claim} ({conditions})"
         return f"{points} on the Pareto front of {by}, and no others: proved ({conditions})"
 
     def _points_table(self) -> Table:
@@ -466,7 +467,7 @@ def _pareto_minimal(candidates: Sequence[Costs], objectives: Sequence[Objective]
 
 
 class _WithoutWarnings(Reporter):
-    """A reporter that forwards trees and bounds; warnings are dropped, since the first search gave them."""
+    """A reporter that forwards trees and bounds alone; the first search has given the warnings already."""
 
     def __init__(self, reporter: Reporter) -> None:
         self._reporter = reporter

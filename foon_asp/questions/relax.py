@@ -247,7 +247,10 @@ def solve_relaxation(task: StripsTask, deadline: Deadline) -> Relaxed:
 
 
 class _StopWhenProved(Reporter):
-    """A reporter that ends the search by its deadline once the incumbent's cost equals the lower bound."""
+    """A reporter that ends the search by its deadline once the incumbent's cost equals the lower bound.
+
+    It forwards only trees and bounds to another reporter.
+    """
 
     def __init__(self, reporter: Reporter, objective: Objective, deadline: Deadline) -> None:
         self._reporter, self._objective, self._deadline = reporter, objective, deadline
