@@ -132,7 +132,7 @@ def compare(
     """Return the results of searches on a problem of one goal, and the optimum by each objective.
 
     The trees of the searches are simulated. ``time_limit`` is in seconds for each optimum. The
-    memory limit of ``settings`` holds for each, too. The optimum by ``success`` is left out where no rates
+    memory limit of ``settings`` is also for each. The optimum by ``success`` is left out where no rates
     are known. Optima keep to the ``rules``; the searches ignore them, and results list the rules that a tree
     breaks. Raises :class:`BugError` if a tree that executes is better than a proved optimum.
     """

@@ -419,7 +419,7 @@ def _divide_boxes(boxes: Sequence[Box], point: Sequence[int | Fraction]) -> list
             divided.add(box)
 
     def contains(box: Box, inner: Box) -> bool:
-        """Return whether all costs in ``inner`` are in ``box``, too; false for equal boxes."""
+        """Return whether ``box`` has all the costs that ``inner`` has; false for equal boxes."""
         return box != inner and all(
             bound is None or (inner_bound is not None and inner_bound <= bound)
             for bound, inner_bound in zip(box, inner, strict=True)

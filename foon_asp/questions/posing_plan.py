@@ -117,7 +117,7 @@ def data_for_trees(command: Command, files: Mapping[Path, ListedTree]) -> Datase
 
 
 def own_networks(kitchen: Network, files: Mapping[Path, ListedTree]) -> Sequence[Path]:
-    """Return the files with trees that serve as the network, too, for a command that names no data.
+    """Return the files with trees that also serve as the network, for a command that names no data.
 
     Files are returned only if the bundled ``kitchen`` has fewer than half of the units; otherwise, the
     bundled kitchen is the network. A smaller share can be chance. With a larger share, the missing units were

@@ -302,7 +302,7 @@ def _loss_by(best: Costs, remaining: Costs, objective: Objective) -> int | Fract
 def _without_items(problem: Problem, *removed: int) -> Problem:
     """Return the problem without some items of the kitchen, by id.
 
-    For a problem over a part of a store, the units that make the items are read, too.
+    For a problem over a part of a store, the units that make the items are also read.
     """
     if problem.network.object_numbers and problem.origin is not None:  # what makes the items is read
         return problem.vary(without=[problem.network.objects[o] for o in removed])

@@ -467,7 +467,7 @@ def pages(
       costs less than this answer, except by ``kitchen``; there is no proof by ``kitchen``.
     - Under rules: the answer without them.
     - If there is no tree: why, and a shopping list unless rules are the reason. This is the last part. It is
-      left out if there is no plan only because items run out.
+      left out where items run out: if they lasted, there would be a tree.
     - The searches, the five best alternatives and the front, as far as they are wanted.
 
     The limits of ``settings`` are for all pages together.
