@@ -101,7 +101,11 @@ class SearchResult(Value, frozen=True):
         return self.obstacle is not None and self.obstacle.cycle
 
     def beats_the_optimum(self, objective: Objective) -> bool:
-        """Return whether the tree costs less than the proved optimum, and therefore does not execute."""
+        """Return whether the tree is better than the proved optimum.
+
+        Such a tree does not execute, or breaks a rule. Without a tree or a proved optimum, the answer is
+        false.
+        """
         ratio = self.ratios.get(objective)
         return ratio is not None and (ratio > 1 if multiplies(objective) else ratio < 1)
 
@@ -127,10 +131,10 @@ def compare(
 ) -> Comparison:
     """Return the results of searches on a problem of one goal, and the optimum by each objective.
 
-    The trees of the searches are simulated. ``time_limit`` is in seconds for each optimum. The optimum by
-    ``success`` is left out where no rates are known. Optima keep to the ``rules``; the searches ignore them,
-    and results list the rules that a tree breaks. Raises :class:`BugError` if a tree that executes is better
-    than a proved optimum.
+    The trees of the searches are simulated. ``time_limit`` is in seconds for each optimum. The
+    memory limit of ``settings`` is also for each. The optimum by ``success`` is left out where no rates
+    are known. Optima keep to the ``rules``; the searches ignore them, and results list the rules that a tree
+    breaks. Raises :class:`BugError` if a tree that executes is better than a proved optimum.
     """
     solver_settings = rules or Settings()
     optima: dict[Objective, Optimum] = {}
@@ -149,7 +153,11 @@ def compare(
 
 
 def _require_consistent(comparison: Comparison) -> None:
-    """Raise :class:`BugError` where an executable tree is better than a proved optimum."""
+    """Raise :class:`BugError` where a tree that executes is better than a proved optimum.
+
+    Raise it also for a tree that executes where it was proved that none exists. Trees that break a rule are
+    not looked at.
+    """
     for result in comparison.searches:
         if not result.is_valid:
             continue
@@ -234,7 +242,8 @@ def simulate_retrieval(problem: Problem, units: Sequence[int], tree: TaskTree) -
     """Return the simulation of a tree that a search returned; ``units`` are its ids.
 
     Where items are used up, it is the simulation of a plan that executes each unit once, in the order listed
-    or in another one that runs.
+    or in another one that runs. But a tree that does not execute even if items last has the simulation for
+    lasting items.
     """
     simulation = simulate_for(problem, tree)
     if problem.items is None or simulation.verdict is Verdict.NEVER:

@@ -48,7 +48,10 @@ def summarize_comparisons(comparisons: Sequence[Comparison]) -> list[Summary]:
 
 
 def _summarize_search(name: str, comparisons: Sequence[Comparison]) -> Summary:
-    """Return the summary of the results of one search, by its name."""
+    """Return the summary of the results of one search, by its name.
+
+    A result without a ratio to the optimum, or with the ratio 0, does not count in the distances.
+    """
     results = [(row.goal, result) for row in comparisons for result in row.searches if result.search == name]
     distances: dict[Objective, Distance] = {}
     for objective in MEASURED:

@@ -99,7 +99,8 @@ def _cells(answers: list[Answer], list_count: int, columns: Iterable[Objective])
     The first cell names the lists of objectives that the answers are for. It says ``all`` if there are
     several lists, ``list_count`` in number, and the answers are for all of them. A ``*`` marks a tree that
     does not run if items are used up. The measures by the objectives in ``columns``, the status and the sum
-    of the seconds follow.
+    of the seconds follow. Without a tree, the first cell and the measures are empty. A measure that is not
+    known is ``–``.
     """
     first = answers[0]
     names = [" then ".join(answer.objectives) for answer in answers]
@@ -132,7 +133,7 @@ def solve_all_goals(
 ) -> Optima:
     """Find the best tree for each goal of a problem by itself, under several lists of objectives.
 
-    The limits are for each answer.
+    The limits are for each answer. Ctrl-C stops all answers.
 
     Parameters:
         objectives: Several objectives; each is one name, or a list separated by commas.

@@ -298,7 +298,8 @@ def alternatives(
         The ``trees``; ``complete`` tells whether they are all that were asked for, proved.
 
     Raises:
-        UserError: for a wrong argument or constraint, or if both ``best`` and ``different`` are given.
+        UserError: for a wrong argument or constraint, for ``best`` with ``different``, and for ``within``
+            without ``different``.
 
     Example:
         >>> found = foon_asp.alternatives(foon_asp.load().problem("macaroni"), best=3)
@@ -325,7 +326,11 @@ def alternatives(
 
 
 def _alternatives_of(problem: Problem, objectives: tuple[Objective, ...], pool: _Pool) -> Alternatives:
-    """Return the trees of a pool as a result, with units of all and of some optimal trees, and partings."""
+    """Return the trees of a pool as a result, with units of all and of some optimal trees, and partings.
+
+    The optimal trees are those with the costs of the first tree. If no tree of the pool is proved, no tree
+    counts as optimal.
+    """
     order, unit_number = levels(objectives), problem.network.unit_number
     proved = pool.trees if len(pool.trees) > pool.unproved else ()
     optimal = [

@@ -362,7 +362,8 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
     def findings(self) -> Iterator[Block]:
         """Yield the claim, the remarks and the steps; if no tree exists, the reasons for that.
 
-        For a tree that is not proved best, the bounds follow the remarks.
+        For a tree that is not proved best, the bounds follow the remarks. The reasons are searched for
+        here, until the deadline of the caller.
         """
         yield from self.headlines()
         yield from self.remarks()
@@ -419,7 +420,10 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
                 yield f"  {step.motion}    [{step.source[0]}] for {labels}"
 
     def _penalty_lines(self) -> Iterator[str]:
-        """Yield lines with the penalty, and the soft constraints that the tree breaks."""
+        """Yield lines with the penalty, and the soft constraints that the tree breaks.
+
+        Without soft constraints or without a tree, yield nothing.
+        """
         if not isinstance(self.soft_constraints, tuple) or self.penalty is None:
             return
         all_constraints = counted(len(self.soft_constraints), "soft constraint")
@@ -561,8 +565,8 @@ def _answer_with_reading(
     without rules and then with them. A tree with another unit has a unit more than its goals need. So it
     costs at least the optimum without rules, plus a unit. If it cannot be better, no more is read.
 
-    If a limit stops the reading of all data, the tree found so far is returned as ``FEASIBLE``, with the
-    optimum without rules as its bound. Without such a tree, the interrupt is raised.
+    If a limit or ctrl-C stops the reading of all data, the tree found so far is returned as ``FEASIBLE``,
+    with the optimum without rules as its bound. Without such a tree, the interrupt is raised.
     """
     problem = read_deferred(problem)
     is_partial = problem.network.object_numbers and problem.items is None and settings.constraints

@@ -146,14 +146,15 @@ class Assistance(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name(
         """Yield the cells of each row: the number of helped units, success, units and changes.
 
         The changes are the helped units that were added or removed since the row before. For a tree that is
-        not proved best, they end with a remark and its bound.
+        not proved best, they end with a remark and its bound. A row without a tree says so in the place of
+        the success.
         """
         motions = {step.id: step.motion for row in self.rows for step in row.units or ()}
         previous_helped: tuple[int, ...] = ()
         for row in self.rows:
             if row.costs is None or row.success is None:
-                none = "no tree" if row.status is Status.INFEASIBLE else "no tree found yet"
-                yield str(row.most), none, "", ""
+                no_tree_text = "no tree" if row.status is Status.INFEASIBLE else "no tree found yet"
+                yield str(row.most), no_tree_text, "", ""
                 continue
             changes = [("-", unit) for unit in previous_helped if unit not in row.by_person]
             changes += [("+", unit) for unit in row.by_person if unit not in previous_helped]
@@ -169,8 +170,8 @@ class Assistance(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name(
         last, greatest = self.rows[-1], self.greatest_success
         if self.reach is not None:
             # the number that was asked for as a decimal where it is a short one
-            text = success_text(self.reach)
-            wanted = str(self.reach) if text.startswith("≈") else text
+            reach_text = success_text(self.reach)
+            wanted = str(self.reach) if reach_text.startswith("≈") else reach_text
             if self.smallest is not None:
                 fewer = ", and not with fewer" if self.smallest else ""
                 yield f"{wanted} is reached with help for {counted(self.smallest, 'unit')}{fewer}: proved"
@@ -244,7 +245,7 @@ def assist(
     trees = helped_trees(problem, person_rates, settings, caller().reporter, limit, wanted)
     rows = tuple(_assisted_tree(problem, max_helped, row) for max_helped, row in enumerate(trees.rows))
     last = rows[-1].success
-    answer = Assistance(
+    assistance = Assistance(
         **question_fields(problem, [Objective.SUCCESS]),
         person=person_rates,
         complete=trees.complete,
@@ -254,7 +255,7 @@ def assist(
         smallest=rows[-1].most if wanted is not None and last is not None and last >= wanted else None,
         rows=rows,
     )
-    return answer.set_unserialized(problem=problem, most=limit)
+    return assistance.set_unserialized(problem=problem, most=limit)
 
 
 def _read_person_rates(

@@ -274,7 +274,8 @@ def check(
         the ``certificate`` that was found, if one was asked for.
 
     Raises:
-        UserError: if the file cannot be read or contains no tree, or for a wrong rule.
+        UserError: if the file cannot be read or contains no tree, for a wrong rule, for encodings, and for
+            objectives without a certificate.
 
     Example:
         >>> problem = foon_asp.load().problem("macaroni")

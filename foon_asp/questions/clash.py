@@ -136,7 +136,7 @@ class Clash(Value, frozen=True, kw_only=True):
 def find_clash(problem: Problem, settings: Settings, own_weights: Mapping[Constraint, int]) -> Clash:
     """Find a smallest clash of the constraints in ``settings``, and the cheapest constraints to drop.
 
-    The best tree by units without the dropped constraints is found, too. ``own_weights`` are the costs of
+    It also finds the best tree by units without the dropped constraints. ``own_weights`` are the costs of
     dropping a rule of a constraint, 1 by default. At a limit, the result has what was found by then.
 
     The smallest clash is a smallest minimal unsatisfiable subset (MUS). It is found by implicit hitting sets

@@ -217,7 +217,7 @@ def compare(
         trees: Show the trees of the searches too, step by step.
         all_makeable: Compare for every object that can be made, and print a summary.
         published: Show the published figures beside the measured ones. If a goal has no such figures, they
-            are left out. With ``published``, ``ids`` is run as published: it takes the first unit everywhere.
+            are left out. With ``published``, ``ids`` is run as published: it is the same as ``bfs``.
         results: A file to which results are added, as JSON Lines; goals that it already has are not searched
             again.
 

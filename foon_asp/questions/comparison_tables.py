@@ -136,6 +136,7 @@ def summary_tables(summaries: Sequence[Summary], proved: bool) -> Iterator[Block
     """Yield summary tables over many goals: how many trees execute, and their ratios to the optimum.
 
     Columns for cycles, broken rules and trees better than the optimum are there only if some tree has them.
+    The shares of trees that execute are those of the trees that a search returned, not of all goals.
 
     Parameters:
         summaries: One for each search.
@@ -175,7 +176,10 @@ def summary_tables(summaries: Sequence[Summary], proved: bool) -> Iterator[Block
 
 
 def published_table(table: PublishedTable, comparisons: Sequence[Comparison]) -> Iterator[Block]:
-    """Yield a table of published and measured numbers of units, and how many agree for each search."""
+    """Yield a table of published and measured numbers of units, and how many agree for each search.
+
+    The last column is the optimum, or its status if no optimum is known.
+    """
     yield from ("Functional units, published → measured; = where they agree", "")
     agreeing_counts = dict.fromkeys(table.columns, 0)
     rows = []

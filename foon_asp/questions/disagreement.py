@@ -27,7 +27,8 @@ _DISTRIBUTIONS = ("foon-asp", "clingo", "highspy")
 def write_disagreement(request: ClaimedAnswer, disagreement: DisagreementError) -> str:
     """Write a report on a disagreement into a file in the current folder; return the message for the user.
 
-    :func:`disagreement_name` names the file. If it cannot be written, the message says so.
+    :func:`disagreement_name` names the file. If it cannot be written, the message says so. An older report of
+    this name is replaced.
     """
     name = disagreement_name(request.outcome)
     try:

@@ -30,7 +30,7 @@ def complete_docstring(
 
     ``texts`` has descriptions by name; :func:`docstring_entries` take precedence. A parameter without a
     description is left out. If the docstring has no section ``Parameters``, it is inserted before
-    ``Returns``. Return ``None`` for a function without docstring.
+    ``Returns``, or else at the end. Return ``None`` for a function without docstring.
     """
     if ask.__doc__ is None:  # python -OO
         return None

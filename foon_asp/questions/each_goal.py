@@ -49,7 +49,10 @@ class EachGoal(Result, frozen=True, kw_only=True, tag=schema_name("each")):
                 yield from first.show()
 
     def _groups_by_tree(self) -> list[list[Any]]:
-        """Return the answers in groups whose trees have the same units; an answer without a tree is alone."""
+        """Return the answers in groups whose trees have the same units, in order of their first answers.
+
+        An answer without a step, and an answer to another question than ``solve``, is a group by itself.
+        """
         from foon_asp.questions.answer import Answer  # noqa: PLC0415
 
         groups: dict[object, list[Any]] = {}

@@ -85,11 +85,11 @@ class Envelope:
             tiny = _TINY if rate > _TINY else rate * _TINY
             end = self._end_from(motion, 1, tiny)
             # a tree with fewer units of the motion wins below some rate: below this one, if it has all others
-            everything = self._as_function(motion, tuple(self._units))
+            tree_of_all_units = self._as_function(motion, tuple(self._units))
             if (
                 end.at is None
                 and end.proved
-                and everything.factor <= self._as_function(motion, self._tree).factor * tiny
+                and tree_of_all_units.factor <= self._as_function(motion, self._tree).factor * tiny
             ):
                 end = self._end_from(motion, 0, Fraction(1, 2))
             return end
@@ -103,6 +103,7 @@ class Envelope:
         The distant rate to the power of ``degree`` is ``raised_rate``. A tree that is better there gives the
         next rate to try, which is nearer to the present one, and so on. At degree 0, the motion has the rate
         ``raised_rate`` and all others have 1, so that the tree with the fewest units of the motion is found.
+        An end is not proved if the last search reached a limit.
         """
         tree = self._as_function(motion, self._tree)
         rate = Root(1, (self._problem.rates or {})[motion])
@@ -158,7 +159,8 @@ class Envelope:
     def _solve_varied(self, varied: Problem) -> tuple[Outcome, bool]:
         """Return the optimum at other rates, and whether it is better than the best tree of the envelope.
 
-        Raises :class:`BugError` if a proved optimum is worse than this tree.
+        After a limit, the outcome is the best tree found, if any. Raises :class:`BugError` if a proved
+        optimum is worse than the tree of the envelope.
         """
         outcome = solve(varied, _SUCCESS, self._settings, Reporter())
         tree_success = _success(varied.costs(self._tree))
@@ -183,7 +185,10 @@ class Envelope:
 
 
 def _at_rate(problem: Problem, motion: str, degree: int, raised_rate: Fraction) -> Problem:
-    """Return a problem with all rates to the power of ``degree``, and ``raised_rate`` for the motion."""
+    """Return a problem with all rates to the power of ``degree``, and ``raised_rate`` for the motion.
+
+    Units with own rates keep these, to the power. User rules see the rates as given.
+    """
     raised = {name: rate**degree for name, rate in (problem.rates or {}).items()}
     own_rates = {unit: rate**degree for unit, rate in problem.own_rates.items()}
     return replace(problem, rates=raised | {motion: raised_rate}, own_rates=own_rates, as_seen=problem)

@@ -106,7 +106,10 @@ class Exported(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("e
 def _export_and_write(
     problem: Problem, *arguments: Any, folder_written: Path | None = None, **options: Any
 ) -> Exported:
-    """Return the result of :func:`export`; if ``folder_written`` names a folder, write the files into it."""
+    """Return the result of :func:`export`; if ``folder_written`` names a folder, write the files into it.
+
+    The attribute ``written`` of the result is then this folder.
+    """
     exported = export(problem, *arguments, **options)
     if folder_written is not None:
         exported.write(folder_written)
@@ -125,7 +128,8 @@ def _pose_export(
 def _has_merged_copies(problem: Problem, items: str | None) -> bool:
     """Return whether ``items`` is ``set``: then all copies of an object node are one.
 
-    Raises :class:`UserError` for an unknown word, and if ``items`` contradicts the problem.
+    Raises :class:`UserError` for an unknown word, and if ``items`` contradicts the problem. ``None`` stands
+    for the items of the problem as they are.
     """
     if items not in {None, *_ITEM_RULES}:
         raise UserError(f"found items={items!r}, expected one of {', '.join(_ITEM_RULES)}")

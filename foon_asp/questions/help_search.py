@@ -61,13 +61,17 @@ class PricedHelp:
         return self._best_enumerated(max_helped, min(bounds, key=bounds.__getitem__))
 
     def best_with_any_help(self) -> Outcome:
-        """Return the best tree with help for any number of its units."""
+        """Return the best tree with help for any number of its units.
+
+        In the problem of the outcome, each motion has the greater rate of person and robot; the helped units
+        are not marked.
+        """
         return self._optimum_at(Fraction(1))
 
     def helped_units(self, max_helped: int, units: Iterable[int]) -> list[int]:
         """Return those of the ``units`` where help raises the rate most, at most ``max_helped``.
 
-        Units that the person does not do better are left out.
+        Units that the person does not do better are left out. The unit with the greatest gain comes first.
         """
         motions = self._problem.network.motions
         by_gain = sorted((self._break_even[motions[u]], u) for u in units if motions[u] in self._break_even)
@@ -76,7 +80,8 @@ class PricedHelp:
     def _best_enumerated(self, max_helped: int, price: Fraction) -> Outcome:
         """Enumerate trees by success at a price; return the best one with help for ``max_helped`` units.
 
-        The enumeration ends where no later tree can be better.
+        The enumeration ends where no later tree can be better. At a limit, return the result of
+        :meth:`_best_before_limit`.
         """
         best: Outcome | None = None
         ranked = Ranked(self._problem_at(price), _SUCCESS, self._settings, Reporter())
@@ -114,7 +119,10 @@ class PricedHelp:
         return Outcome(problem, _SUCCESS, Status.FEASIBLE, units, problem.costs(units), {}, {})
 
     def _optimum_at(self, price: Fraction) -> Outcome:
-        """Return the optimum at a price, the factor of success that help for a unit costs; it is cached."""
+        """Return the optimum at a price, the factor of success that help for a unit costs; it is cached.
+
+        Only the first search reports to the reporter.
+        """
         if price not in self._outcomes:
             reporter = (
                 Reporter() if self._outcomes else self._reporter
@@ -147,7 +155,10 @@ class CountedHelp:
         self._twins = replace(problem, network=network.with_copies(units), own_rates=own_rates)
 
     def best(self, max_helped: int) -> Outcome:
-        """Return the best tree with help for at most ``max_helped`` units, without copies of units."""
+        """Return the best tree with help for at most ``max_helped`` units, without copies of units.
+
+        Only the first search reports to the reporter.
+        """
         unit_number = self._twins.network.unit_number
         twins = {unit_number(twin): unit_number(unit) for twin, unit in self._originals.items()}
         settings = self._settings._replace(bounded=assistance_bounds(twins, max_helped))
@@ -190,9 +201,11 @@ def helped_trees(
 ) -> HelpedTrees:
     """Find the best trees with help for 0, 1, 2, ... units.
 
-    ``person`` has the person's rates by motion; ``None`` for a person who never fails. The rows end with
-    ``max_helped`` units, with the first tree whose success is at least ``wanted``, or where more help changes
-    nothing. ``None`` for either lifts its condition. At a limit, the rows end early.
+    ``person`` has the person's rates by motion; ``None`` for a person who never fails. The person takes over
+    only motions with a higher rate than the robot's. The rows end with ``max_helped`` units, with the first
+    tree whose success is at least ``wanted``, or where more help changes nothing. ``None`` for either lifts
+    its condition. At a limit or ctrl-C, the rows end early, and the last may be unproved. An unproved row
+    repeats the tree of the row before if no better one was found. Ctrl-C before the first row is raised.
 
     Raises :class:`UserError` for wrong rules, and for rules that look beyond the tree and at who does a unit.
     """
@@ -234,8 +247,8 @@ def helped_trees(
     except KeyboardInterrupt:
         if not rows:
             raise
-    costs = with_any_help is not None and with_any_help.status in _PROVED and with_any_help.costs
-    return HelpedTrees(tuple(rows), costs.success if costs else None, complete)
+    greatest_costs = with_any_help is not None and with_any_help.status in _PROVED and with_any_help.costs
+    return HelpedTrees(tuple(rows), greatest_costs.success if greatest_costs else None, complete)
 
 
 def _order_key(outcome: Outcome) -> tuple[int | Fraction, ...]:

@@ -159,10 +159,11 @@ def merge(
 
 
 def merge_files(data_files: DataFiles, store: Path | None, lenient: bool) -> Merged:
-    """Merge networks in memory, or with a path ``store`` into a store, which keeps all other data files, too.
+    """Merge networks in memory, or with a path ``store`` into a store.
 
-    A file named twice is read once. ``lenient`` skips lines that are not understood. Raises
-    :class:`UserError` if there is no unit, or if copies of a unit have different prices or amounts.
+    The store also keeps all other data files. A file named twice is read once. ``lenient`` skips lines that
+    are not understood. Raises :class:`UserError` if there is no unit, or if copies of a unit have different
+    prices or amounts.
     """
     network_files = tuple(dict.fromkeys(data_files.network))
     if store is not None:

@@ -154,22 +154,23 @@ class Front(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("pare
 
         Without a point, the line says that no tree exists, or that a limit came first.
         """
-        rule = self.conditions
+        conditions = self.conditions
         if self.encodings is not None:
-            rule += f", as {self.encodings} has it"
+            conditions += f", as {self.encodings} has it"
         if not self.points and self.complete:
-            return f"infeasible: proved that no task tree exists ({rule})"
+            return f"infeasible: proved that no task tree exists ({conditions})"
         if not self.points:
-            return f"unknown: stopped at a limit before any point of the front was found ({rule})"
+            return f"unknown: stopped at a limit before any point of the front was found ({conditions})"
         *first, last = self.objectives
         by = f"{', '.join(first)} and {last}"
         points = counted(len(self.points), "point")
         if not self.complete:
-            return f"at least {points} on the Pareto front of {by} ({rule}; stopped at a limit)"
+            return f"at least {points} on the Pareto front of {by} ({conditions}; stopped at a limit)"
         if len(self.points) == 1:
             every = "both" if len(self.objectives) == 2 else "each"
-            return f"1 point on the Pareto front of {by}, one tree being the best by {every}: proved ({rule})"
-        return f"{points} on the Pareto front of {by}, and no others: proved ({rule})"
+            claim = f"1 point on the Pareto front of {by}, one tree being the best by {every}: proved"
+            return f"{claim} ({conditions})"
+        return f"{points} on the Pareto front of {by}, and no others: proved ({conditions})"
 
     def _points_table(self) -> Table:
         """Return a row for each point: its number, its measures, and the motions that go and come."""
@@ -329,7 +330,10 @@ def pareto(
 def _front_points(
     problem: Problem, objectives: Sequence[Objective], points: Sequence[_FoundTree]
 ) -> Iterator[Point]:
-    """Yield a point of the front for each tree, with the units that change from the previous tree."""
+    """Yield a point of the front for each tree, with the units that change from the previous tree.
+
+    The first tree has no changes.
+    """
     before: CostedTree | None = None
     for units, costs in points:
         tree = costed_tree(problem, units, costs)
@@ -415,7 +419,7 @@ def _divide_boxes(boxes: Sequence[Box], point: Sequence[int | Fraction]) -> list
             divided.add(box)
 
     def contains(box: Box, inner: Box) -> bool:
-        """Return whether all costs in ``inner`` are in ``box``, too; false for equal boxes."""
+        """Return whether ``box`` has all the costs that ``inner`` has; false for equal boxes."""
         return box != inner and all(
             bound is None or (inner_bound is not None and inner_bound <= bound)
             for bound, inner_bound in zip(box, inner, strict=True)
@@ -463,7 +467,7 @@ def _pareto_minimal(candidates: Sequence[Costs], objectives: Sequence[Objective]
 
 
 class _WithoutWarnings(Reporter):
-    """A reporter that forwards trees and bounds; warnings are dropped, since the first search gave them."""
+    """A reporter that forwards trees and bounds alone; the first search has given the warnings already."""
 
     def __init__(self, reporter: Reporter) -> None:
         self._reporter = reporter

@@ -30,7 +30,8 @@ def pose_plan(
 
     ``named`` has one entry: the file, by the name of the question's parameter. Goals, a container rule and
     amounts of goals on the command line override those that an answer in the file states. The data are those
-    of :func:`data_for_trees`.
+    of :func:`data_for_trees`, which may add the file to the networks of the command. If items last, the
+    amounts of the answer are ignored.
     """
     (plan,) = named.values()
     answer = read_answer(plan)
@@ -116,7 +117,7 @@ def data_for_trees(command: Command, files: Mapping[Path, ListedTree]) -> Datase
 
 
 def own_networks(kitchen: Network, files: Mapping[Path, ListedTree]) -> Sequence[Path]:
-    """Return the files with trees that serve as the network, too, for a command that names no data.
+    """Return the files with trees that also serve as the network, for a command that names no data.
 
     Files are returned only if the bundled ``kitchen`` has fewer than half of the units; otherwise, the
     bundled kitchen is the network. A smaller share can be chance. With a larger share, the missing units were

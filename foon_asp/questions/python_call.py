@@ -34,7 +34,10 @@ HELP = {
 
 
 class _Listener(Reporter):
-    """A reporter that passes progress to a function, and warnings to the caller."""
+    """A reporter that passes progress to a function, and warnings to the caller.
+
+    Statistics of clingo are dropped.
+    """
 
     def __init__(self, on_progress: OnProgress, reporter: Reporter) -> None:
         self._on_progress, self._reporter = on_progress, reporter
@@ -53,7 +56,7 @@ class _Listener(Reporter):
         self._report(self._progress._replace(bounds={**self._progress.bounds, objective: bound}))
 
     def step(self, word: str, done: int, total: int) -> None:
-        """Report the progress with the numbers of answers that are done and in total."""
+        """Report the progress with the numbers of answers that are done and in total; ``word`` is dropped."""
         self._report(self._progress._replace(done=done, total=total))
 
     def _report(self, progress: Progress) -> None:

@@ -118,11 +118,14 @@ class Question:
         self.command = command
 
     def format_of(self, file: Path) -> str:
-        """Return the format that the ending of a file name stands for; raises :class:`UserError` if none."""
+        """Return the format of a file name by its ending; its letters may be of either case.
+
+        Raises :class:`UserError` for another ending.
+        """
         format_ = self.suffixes.get(file.suffix.lower())
         if format_ is None:
-            ends = " ".join(self.suffixes)
-            raise UserError(f"{file}: the name says no format: end it in {ends}, or name one (--format)")
+            endings = " ".join(self.suffixes)
+            raise UserError(f"{file}: the name says no format: end it in {endings}, or name one (--format)")
         return format_
 
 
@@ -149,9 +152,11 @@ def question(
         all_options = (*options, *(option for option in _options_of(ask) if option.name not in named))
         if not used_up and "items" not in {option.name for option in all_options}:
             ask = _for_lasting_items(ask)
-        typed_in = command or ask  # a command line has read its values already, rules among them
+        command_function = command or ask  # a command line has read its values already, rules among them
         wrapped = python_question(ask, all_options)
-        wrapped.__dict__["question"] = Question(all_options, help_, formats, suffixes or {}, pose, typed_in)
+        wrapped.__dict__["question"] = Question(
+            all_options, help_, formats, suffixes or {}, pose, command_function
+        )
         return wrapped
 
     return decorate
@@ -174,7 +179,8 @@ def python_question(ask: Callable[P, T], options: Sequence[Option] | None = None
 def expanded_signature(ask: Callable[..., object]) -> inspect.Signature:
     """Return the signature of a function, with a parameter for each key of an ``Unpack`` annotation.
 
-    These parameters replace one such as ``**options: Unpack[CommonOptions]``.
+    These parameters replace one such as ``**options: Unpack[CommonOptions]``. They are keywords only, and
+    most have the default ``None``.
     """
     signature = inspect.signature(ask)
     parameters: list[inspect.Parameter] = []
@@ -199,11 +205,13 @@ def _keyword_annotations(annotation: object) -> Mapping[str, object]:
 def _without_options(signature: inspect.Signature) -> inspect.Signature:
     """Return the signature with plain types in place of annotations that have an :class:`Option`."""
     parameters = signature.parameters.values()
-    kinds = (getattr(parameter.annotation, "__origin__", None) for parameter in parameters)
+    origins = (getattr(parameter.annotation, "__origin__", None) for parameter in parameters)
     return signature.replace(
         parameters=[
-            parameter.replace(annotation=kind) if hasattr(parameter.annotation, "__metadata__") else parameter
-            for parameter, kind in zip(parameters, kinds, strict=True)
+            parameter.replace(annotation=origin)
+            if hasattr(parameter.annotation, "__metadata__")
+            else parameter
+            for parameter, origin in zip(parameters, origins, strict=True)
         ]
     )
 
@@ -221,7 +229,8 @@ def _complete_option(option: Option, parameter: inspect.Parameter, texts: Mappin
     """Return an option with its missing name, default, help and type filled in from its parameter.
 
     ``texts`` are the entries of the docstring by parameter; the help is the first sentence. An option that
-    has a name is shared by questions, and only its default is changed.
+    has a name is shared by questions, and only its default is changed. A parameter of type ``bool`` makes a
+    flag, and one of type ``int`` takes a whole number.
     """
     if option.name:  # an option shared by questions, whose default may differ
         default = parameter.default if isinstance(parameter.default, str | int) else option.default

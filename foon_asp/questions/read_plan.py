@@ -66,7 +66,7 @@ def _pose_from_map(command: Command, names: Path | None) -> tuple[Problem]:
 
     The map has the goals, the container rule, and how items are used up. Raises :class:`UserError` without a
     map, for a map of another level than the data, and if the command names no data and the map is not of the
-    bundled kitchen.
+    bundled kitchen. A map is of this kitchen if the kitchen has at least half of its units.
     """
     if names is None:
         raise UserError(

@@ -140,13 +140,13 @@ class Regrets(WithAnswer, frozen=True, kw_only=True, tag=schema_name("regret")):
         The line of a regret has the loss by the first objective. The greatest loss comes first.
         """
         yield from (*self.goal_lines(), *self.answer.headlines())
-        what = "tree" if self.items == "lasting" else "plan"
+        word_for_solution = "tree" if self.items == "lasting" else "plan"
         for removal, title in _TITLES.items():
             regrets = [regret for regret in self.regrets if regret.part is removal]
             if regrets:
                 yield from ("", title)
             for regret in regrets:
-                yield f"  {regret.loss_text(self.objectives[0], what).ljust(8)}    {regret}"
+                yield f"  {regret.loss_text(self.objectives[0], word_for_solution).ljust(8)}    {regret}"
                 if regret.costs is not None and regret.costs != self.answer.costs:
                     yield f"       the best is then {costs_text(regret.costs, self.objectives)}"
 
@@ -206,9 +206,9 @@ def regret(
         raise UserError(f"there is no unit {numbers[asked_units.index(None)]} in the network")
     units_by_motion = {motion: _units_of_motion(problem, motion) for motion in motion_names}
     best = solve(problem, chosen, settings, caller().reporter)
-    head, answer = question_fields(problem, chosen), Answer.of(best)
+    fields_of_question, answer = question_fields(problem, chosen), Answer.of(best)
     if best.units is None or best.status is not Status.OPTIMAL:
-        return Regrets(**head, answer=answer, regrets=())
+        return Regrets(**fields_of_question, answer=answer, regrets=())
     regrets: list[Regret] = []
     # under rules, the optimum may be better without a part: they may require what is missing
     unrestricted = settings.constraints == () and settings.replaced is None
@@ -219,7 +219,7 @@ def regret(
 
         ``parts`` name what is left out, as parameters of :func:`_regret_of_parts`. Without rules, raises
         :class:`BugError` if the optimum is better without the part. This is not checked by ``kitchen``
-        without an item.
+        without an item. If a limit or ctrl-C stops ``leave_out``, the status of the regret is ``UNKNOWN``.
         """
         try:
             with settings.effective_deadline.watched(
@@ -249,13 +249,14 @@ def regret(
         nodes = {"item": node_of(network, o), "second_item": node_of(network, other)}
         solve_without(partial(_without_items, problem, o, other), **nodes)
     regrets.sort(key=lambda entry: _regret_key(entry, (*chosen, Objective.UNITS)))
-    return Regrets(**head, answer=answer, regrets=tuple(regrets))
+    return Regrets(**fields_of_question, answer=answer, regrets=tuple(regrets))
 
 
 def regret_of(best: Answer, settings: Settings, unit: int | None = None, item: int | None = None) -> Regret:
     """Return the regret of one unit or one kitchen item, which is given by id.
 
-    The problem of the answer ``best`` is solved without it.
+    The problem of the answer ``best`` is solved without it. Progress and warnings are not reported. Give
+    either the unit or the item.
     """
     network, outcome = best.problem.network, best.outcome
     if unit is not None:
@@ -301,7 +302,7 @@ def _loss_by(best: Costs, remaining: Costs, objective: Objective) -> int | Fract
 def _without_items(problem: Problem, *removed: int) -> Problem:
     """Return the problem without some items of the kitchen, by id.
 
-    For a problem over a part of a store, the units that make the items are read, too.
+    For a problem over a part of a store, the units that make the items are also read.
     """
     if problem.network.object_numbers and problem.origin is not None:  # what makes the items is read
         return problem.vary(without=[problem.network.objects[o] for o in removed])

@@ -237,7 +237,8 @@ def relax(
 def solve_relaxation(task: StripsTask, deadline: Deadline) -> Relaxed:
     """Find the cheapest plan of the delete relaxation of a task.
 
-    The search for a cheapest plan with few actions ends as soon as the cost is proved.
+    Among plans of this cost, one with fewer actions is preferred. But the search ends as soon as the cost is
+    proved, so the plan may have more actions than it needs.
     """
     proof_deadline = Deadline(within=deadline)
     reporter = _StopWhenProved(caller().reporter, task.objective, proof_deadline)
@@ -246,7 +247,10 @@ def solve_relaxation(task: StripsTask, deadline: Deadline) -> Relaxed:
 
 
 class _StopWhenProved(Reporter):
-    """A reporter that ends the search by its deadline once the incumbent's cost equals the lower bound."""
+    """A reporter that ends the search by its deadline once the incumbent's cost equals the lower bound.
+
+    It forwards only trees and bounds to another reporter.
+    """
 
     def __init__(self, reporter: Reporter, objective: Objective, deadline: Deadline) -> None:
         self._reporter, self._objective, self._deadline = reporter, objective, deadline
@@ -254,13 +258,19 @@ class _StopWhenProved(Reporter):
         self._lower_bound: int | Fraction | None = None
 
     def tree(self, costs: Costs) -> None:
-        """Forward the costs of a new incumbent, and record its cost by the objective to prove."""
+        """Forward the costs of a new incumbent, and record its cost by the objective to prove.
+
+        If the cost equals the lower bound, this ends the search.
+        """
         self._reporter.tree(costs)
         self._cost = costs.measure(self._objective)
         self._stop_if_proved()
 
     def bound(self, objective: Objective, bound: int | Fraction) -> None:
-        """Forward a lower bound, and record it if it is on the cost to be proved."""
+        """Forward a lower bound, and record it if it is on the cost to be proved.
+
+        If it equals the cost of the incumbent, this ends the search.
+        """
         self._reporter.bound(objective, bound)
         if objective is self._objective:
             self._lower_bound = bound
@@ -278,7 +288,8 @@ class _StopWhenProved(Reporter):
 def _find_certificate(relaxed: Relaxed, deadline: Deadline) -> "Certificate | None":
     """Return a certificate of the cost, or that no plan exists.
 
-    It is ``None`` if neither is proved, if none is found, and at a limit.
+    Return ``None`` if neither is proved, if no certificate is found, and when a limit or ctrl-C stops the
+    search.
     """
     from foon_asp.certificate import certify, certify_infeasible  # noqa: PLC0415 (slow to import)
 

@@ -221,6 +221,8 @@ def _certify_repair(
 
     If the certificate covers all objectives, it is the proof of the outcome. The certificate is ``None`` if
     the repair is not proved, or if none is found in time. Raises :class:`BugError` if a better tree exists.
+    If no repair exists, the certificate proves this. A certificate of a bound alone leaves the outcome as it
+    is.
     """
     covered = Coverage(({"rule": ALL_STEPS, "units": sorted(needed.steps)},))
     deadline, problem, certificate = settings.effective_deadline, needed.shown, None

@@ -133,8 +133,8 @@ class Schedule(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("s
         if self.makespan is not None:
             claim, proved = ("shortest", ", proved") if self.status is Status.OPTIMAL else ("best found", "")
             yield f"{claim} for {agents}: {time_text(self.makespan)}{proved}"
-            alone = sum((step.end - step.start for step in self.timetable), Fraction(0))
-            yield f"{counted(len(self.timetable), 'step')}, one after the other {time_text(alone)}"
+            sequential_time = sum((step.end - step.start for step in self.timetable), Fraction(0))
+            yield f"{counted(len(self.timetable), 'step')}, one after the other {time_text(sequential_time)}"
         elif self.status is Status.INFEASIBLE:
             yield f"no schedule for {agents}, proved: more tools have to be in use at once than there are"
             yield "if the kitchen has as many of them, say so in a file for --tools:"
@@ -327,7 +327,7 @@ def schedule(
     timed = () if solution.starts is None else tuple(timed_steps(task, solution.starts))
     if solution.starts is not None and (fault := timetable_fault(replayed, tree.units, timed, resources)):
         raise BugError(f"the schedule does not hold: {fault}")
-    after = [
+    earlier_numbers = [
         tuple(earlier + 1 for earlier in sorted(earlier_steps)) for earlier_steps in predecessors(replay)
     ]
     return Schedule(
@@ -341,7 +341,7 @@ def schedule(
             MotionTime(motion, Fraction(duration.seconds), duration.passive)
             for motion, duration in resources.durations.items()
         ),
-        timetable=tuple(_timed_step_values(tree, timed, after)),
+        timetable=tuple(_timed_step_values(tree, timed, earlier_numbers)),
         lacking=tuple(
             LackingTool(str(name), resources.number_of(tree.problem, name), needed)
             for name, needed in solution.lacking.items()
@@ -446,7 +446,8 @@ def _known_durations(
     """Return the known durations by motion, for the motions of a plan and those that are ``stated``.
 
     A stated duration comes first. Then, with ``from_video``, comes the median of the video clips of the
-    motion, and then the ``default``. Warnings name the motions that have a median or the default.
+    motion, and then the ``default``. Warnings name the motions that have a median or the default. With
+    ``from_video``, the whole network is read; files of clips that do not exist are skipped.
     """
     durations = stated_durations(stated)
     motions = dict.fromkeys(unit.motion for unit in tree.units)
@@ -479,7 +480,8 @@ def _known_durations(
 def _tool_counts(stated: Tools | None) -> dict[ToolName, int | None]:
     """Return the stated numbers of tools by label or node; ``None`` for an unlimited number.
 
-    They are read from a file, or checked. Raises :class:`UserError` for a wrong number or label.
+    They are read from a file, or checked. Raises :class:`UserError` for a wrong number or label. If
+    ``stated`` is ``None``, the result is empty.
     """
     if stated is None:
         return {}

@@ -191,7 +191,7 @@ def search(
     Parameters:
         search: ``bfs``, ``dfs``, ``ids``, ``greedy-success``, ``greedy-inputs``, or the name of a search
             that another package offers, which runs in a process of its own.
-        published: Whether to run ``ids`` as published: it takes the first unit everywhere, as ``bfs`` does.
+        published: Whether to run ``ids`` as published: it does not backtrack, and is the same as ``bfs``.
 
     Returns:
         The ``units`` of the tree, its ``costs``, and the ``verdict`` that says whether it executes.

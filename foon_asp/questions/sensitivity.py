@@ -153,9 +153,9 @@ class Sensitivity(WithAnswer, frozen=True, kw_only=True, tag=schema_name("sensit
             headings = ("rate", "from", "to", "motion", "beyond")
             yield Table(headings, [*map(self._cells, flipping)], left_aligned=frozenset({3, 4}), indent=2)
         kept = [str(interval) for interval in stable if interval.proved and interval.units]
-        foreign = sum(interval.proved and not interval.units for interval in stable) + len(self.others)
-        if foreign:
-            kept.append(f"{counted(foreign, 'motion')} that the tree does not have")
+        foreign_count = sum(interval.proved and not interval.units for interval in stable) + len(self.others)
+        if foreign_count:
+            kept.append(f"{counted(foreign_count, 'motion')} that the tree does not have")
         unknown = [str(interval) for interval in stable if not interval.proved]
         for title, names in (("at any rate", kept), ("not known", unknown)):
             if names:
@@ -168,7 +168,7 @@ class Sensitivity(WithAnswer, frozen=True, kw_only=True, tag=schema_name("sensit
     def _cells(self, interval: RateInterval) -> tuple[str, ...]:
         """Return the row of a motion: rate, both ends of the interval, name, and the trees beyond them.
 
-        An end that is not proved has a question mark.
+        An end that is not proved has a question mark. An end that no rate forms is 0 or 1.
         """
         best, ends, beyond = self.answer.units or (), [], []
         for end, limit in ((interval.below, "0"), (interval.above, "1")):
@@ -218,7 +218,8 @@ def sensitivity(problem: Problem, **options: Unpack[CommonOptions]) -> Sensitivi
         The best tree as the ``answer``, and an interval for each motion, the one with the nearest end first.
 
     Raises:
-        UserError: for a wrong argument or constraint, for rates not given, or for rules about ``risk/2``.
+        UserError: for a wrong argument or constraint, for rates not given, for replaced encodings, or for
+            rules about ``risk/2``.
 
     Example:
         >>> found = foon_asp.sensitivity(foon_asp.load().problem("macaroni"))
@@ -244,9 +245,9 @@ def sensitivity(problem: Problem, **options: Unpack[CommonOptions]) -> Sensitivi
         )
     problem = problem_for_rules(problem, settings)
     outcome = solve(problem, _SUCCESS, settings, caller().reporter)
-    answer, head = Answer.of(outcome), question_fields(problem, _SUCCESS)
+    answer, fields_of_question = Answer.of(outcome), question_fields(problem, _SUCCESS)
     if outcome.units is None or outcome.status is not Status.OPTIMAL:
-        return Sensitivity(**head, answer=answer, intervals=(), others=(), first=None)
+        return Sensitivity(**fields_of_question, answer=answer, intervals=(), others=(), first=None)
     envelope = Envelope(problem, outcome.units, settings)
     flipping: list[tuple[Flip, RateInterval]] = []
     stable: list[RateInterval] = []
@@ -268,7 +269,7 @@ def sensitivity(problem: Problem, **options: Unpack[CommonOptions]) -> Sensitivi
         FirstFlip(interval.motion, "above" if flip.above else "below") for flip, interval in flipping[:1]
     ]
     return Sensitivity(
-        **head,
+        **fields_of_question,
         answer=answer,
         intervals=(*(interval for _, interval in flipping), *stable),
         others=tuple(sorted({*problem.network.motions}.difference(envelope.motions))),

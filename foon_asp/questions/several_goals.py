@@ -50,7 +50,8 @@ def with_goals_apart(answer: Answer, settings: Settings, posed: Problem) -> Answ
 def _solve_apart(answer: Answer, settings: Settings, posed: Problem) -> list[Outcome]:
     """Return the best outcome for each goal by itself, in the order of the goals.
 
-    Without rules, raises :class:`BugError` if one goal alone costs more than all goals together.
+    Without rules, raises :class:`BugError` if one goal alone costs more than all goals together. ``posed`` is
+    that of :func:`with_goals_apart`. Nothing is reported to the caller.
     """
     together, problem, objectives = answer.outcome, answer.problem, answer.objectives
     if isinstance(posed, NearbyProblem):
@@ -87,7 +88,8 @@ def _goals_by_unit(problem: Problem, units: Sequence[int]) -> dict[int, list[int
     """Return, for each unit of a tree, the ids of the goals that it is needed for.
 
     ``units`` are in an order that executes. A goal needs its first achiever in this order, the first
-    achievers of the inputs of that unit, and so on.
+    achievers of the inputs of that unit, and so on. Nodes of the kitchen need no unit. A unit that no goal
+    needs has an empty list.
     """
     achievers: dict[int, int] = {}
     for unit in units:

@@ -236,7 +236,9 @@ def shopping_list(
     Where items are used up, a list has the number of copies of each, and a further list lacks some object
     node of every earlier one. Every list is proved: there is no shorter or cheaper one, except those that
     contain all of an earlier list. Among lists of the same cost, one with fewer things comes first, then one
-    with fewer mixtures and objects that units make, then one with a better tree. All of a store is read.
+    with fewer mixtures and objects that units make, then one with a better tree. If a limit
+    stops the search for these trees, the lists stay in the order in which they were found. All of a store is
+    read.
 
     Parameters:
         prices: A price list: lines of an object node, a tab and a price; only what has a price can be bought.
@@ -267,20 +269,20 @@ def shopping_list(
     deadline, reporter = settings.effective_deadline, caller().reporter
     program = assemble(settings, reporter.warning, problem=problem)
     cheapest = _Lists([], complete=True)
-    made_of = (Offer.FOR_SALE, dict[int, Fraction]()) if priced is None else (Offer.PRICED, priced)
+    offer_and_prices = (Offer.FOR_SALE, dict[int, Fraction]()) if priced is None else (Offer.PRICED, priced)
     try:
         with deadline.watched("looking for what is for sale"):
             shop = Shop(problem)
-            offers = _unpriced_offers(problem, shop) if priced is None else [made_of]
-        for made_of in offers:
-            prepared = prepare(problem, chosen, settings, program, for_sale=made_of[1])
-            cheapest = _lists_without_copies(prepared, chosen, shop, made_of[1], max_lists)
+            offers = _unpriced_offers(problem, shop) if priced is None else [offer_and_prices]
+        for offer_and_prices in offers:
+            prepared = prepare(problem, chosen, settings, program, for_sale=offer_and_prices[1])
+            cheapest = _lists_without_copies(prepared, chosen, shop, offer_and_prices[1], max_lists)
             if cheapest.lists or not cheapest.complete:
                 break
     except KeyboardInterrupt:
         deadline.interrupt()
         cheapest = _Lists([], complete=False)
-    offer, wares = made_of
+    offer, wares = offer_and_prices
     outcomes: list[tuple[_PricedList, Outcome]] = []
     for candidate in cheapest.lists:
         outcome = candidate.outcome
@@ -324,9 +326,9 @@ def _shopping_with_copies(
     without_stock = replace(problem, kitchen=problem.endless)  # nodes with an amount can be bought, too
     shop, needs = Shop(without_stock), {*problem.goals, *(o for needs in problem.needs for o in needs)}
     offers = [(Offer.PRICED, dict(priced))] if priced is not None else _unpriced_offers(without_stock, shop)
-    cheapest, made_of = _Lists([], complete=True), (Offer.FOR_SALE, dict[int, Fraction]())
-    for made_of in offers:
-        wares = {o: price for o, price in made_of[1].items() if o in needs}
+    cheapest, offer_and_prices = _Lists([], complete=True), (Offer.FOR_SALE, dict[int, Fraction]())
+    for offer_and_prices in offers:
+        wares = {o: price for o, price in offer_and_prices[1].items() if o in needs}
         second_choices = frozenset(filter(shop.is_second_choice, wares))
 
         def purchases(left_out: Collection[int]) -> Purchases:
@@ -340,8 +342,10 @@ def _shopping_with_copies(
     outcomes = [(listed, listed.outcome) for listed in cheapest.lists if listed.outcome is not None]
     return Shopping(
         **question_fields(problem, objectives),
-        offer=made_of[0],
-        lists=tuple(listed.value(problem, made_of[1], outcome.costs) for listed, outcome in outcomes),
+        offer=offer_and_prices[0],
+        lists=tuple(
+            listed.value(problem, offer_and_prices[1], outcome.costs) for listed, outcome in outcomes
+        ),
         complete=cheapest.complete,
         answer=Answer.of(outcomes[0][1], outcomes[0][0].bought) if outcomes else None,
     )
@@ -390,7 +394,8 @@ class _Lists(NamedTuple):
 def _with_bought_items(problem: Problem, bought: Mapping[int, int]) -> Problem:
     """Return the problem with bought items in its kitchen; ``bought`` has the copies by id of the node.
 
-    Where items are used up, the copies are added to the stock.
+    Where items are used up, the copies are added to the stock. The stock that is stated of a node outside the
+    kitchen does not count.
     """
     kitchen = problem.kitchen.union(bought)
     if problem.items is None:
@@ -542,7 +547,8 @@ class _Shopper:
     def lists(self, max_lists: int) -> _Lists:
         """Return up to ``max_lists`` lists, the cheapest first; at a limit, those found by then.
 
-        If nothing has to be bought, the only list is empty.
+        If nothing has to be bought, the only list is empty. If ``max_lists`` lists are found, others are not
+        ruled out, so the lists are not complete.
         """
         if not self._search_without(frozenset(), caller().reporter):
             return _Lists(self._chosen_lists, complete=False)
@@ -624,7 +630,8 @@ def _lists_under_rules(
     ``sold`` are prices by id of the node. Of equally cheap lists, clingo prefers those without
     ``second_choices``, which are mixtures and nodes that units make. If trees are ``compared``, the caller
     chooses among equally cheap lists by their trees: so up to 30 lists are found, as long as they cost as
-    much as list number ``max_lists``. Raises :class:`UserError` for prices beyond 32 bits.
+    much as list number ``max_lists``. Raises :class:`UserError` for prices beyond 32 bits. An empty list ends
+    the search, since nothing has to be bought.
     """
     scale = math.lcm(*(price.denominator for price in sold.values()))
     if any(price * scale > INT32_MAX for price in sold.values()):
@@ -636,14 +643,14 @@ def _lists_under_rules(
     while len(lists) < max_lists or (
         compared and len(lists) < _MAX_COMPARED and lists[-1].price == lists[max_lists - 1].price
     ):
-        ended = prepared.run(facts, encodings=(encoding,), predicates=[("_buy", 1)])
-        if ended.units is not None:
-            items = tuple(sorted(ended.atoms["_buy"]))
+        clingo_run = prepared.run(facts, encodings=(encoding,), predicates=[("_buy", 1)])
+        if clingo_run.units is not None:
+            items = tuple(sorted(clingo_run.atoms["_buy"]))
             price = sum((sold[o] for o in items), Fraction(0))
-            lists.append(_PricedList(dict.fromkeys(items, 1), price, ended.exhausted))
+            lists.append(_PricedList(dict.fromkeys(items, 1), price, clingo_run.exhausted))
             facts += write_found_list(len(lists), items)
-        if ended.units is None or not ended.exhausted:
-            return _Lists(lists, ended.exhausted)
+        if clingo_run.units is None or not clingo_run.exhausted:
+            return _Lists(lists, clingo_run.exhausted)
         if not items:
             return _Lists(lists, complete=True)
     return _Lists(lists, complete=False)

@@ -145,7 +145,8 @@ def solve(
     """Find the best task tree for the goals of a problem, and prove that no other is better.
 
     At a limit, or when interrupted, the answer is the best tree so far, with a bound on the best one. Under
-    ``soft`` constraints it is the best of the trees with the least penalty for broken constraints.
+    ``soft`` constraints it is the best of the trees with the least penalty for broken constraints. For two to
+    eight goals, the answer also has the best tree for each goal by itself.
 
     Parameters:
         reductions: What reduces the network before the search: ``all``, ``none``, ``safe`` (all that keep

@@ -321,7 +321,7 @@ def _list_units(
     """Return the units with the given ids in the whole network, or all units if there are no ids.
 
     If ``explains``, each input says whether it stays. ``stays`` overrides this for labels and nodes. Raises
-    :class:`UserError` for unknown ids.
+    :class:`UserError` for unknown ids. It is also raised if inputs are to be explained below level 3.
     """
     items = items_of(dataset, "used-up", None, stays) if explains else None
     network = (dataset.data_part((), numbers)[0] if numbers else dataset.data).network
@@ -337,21 +337,28 @@ def _explained_unit(
     """Return a unit, by id, as a value.
 
     ``items`` says how items are used up: each input then says whether it stays and why. If it is ``None``,
-    inputs say nothing of this.
+    inputs say nothing of this. An input that the container rule implies stays.
     """
-    plain, value = unit_of(network, unit), network.unit(unit)
-    needed = set() if items is None else set(needed_inputs(value, rule, utensils, network))
+    unit_value, functional_unit = unit_of(network, unit), network.unit(unit)
+    needed = set() if items is None else set(needed_inputs(functional_unit, rule, utensils, network))
     inputs = []
-    for o, node in zip(network.inputs[unit], value.inputs, strict=True):
+    for o, node in zip(network.inputs[unit], functional_unit.inputs, strict=True):
         stays: bool | UnsetType = UNSET
         why: str | UnsetType = UNSET
         if items is not None and node in needed:
-            fate = items.fate(value, node, utensils)
+            fate = items.fate(functional_unit, node, utensils)
             stays, why = fate.stays, str(fate)
         elif items is not None:
             stays, why = True, "implied, so neither asked for nor used up"
         inputs.append(node_as(ExplainedInput, network, o, stays=stays, why=why))
-    return ExplainedUnit(plain.id, plain.motion, tuple(inputs), plain.outputs, plain.source, plain.stands_for)
+    return ExplainedUnit(
+        unit_value.id,
+        unit_value.motion,
+        tuple(inputs),
+        unit_value.outputs,
+        unit_value.source,
+        unit_value.stands_for,
+    )
 
 
 def _starting_nodes(network: Network) -> StartingNodes:

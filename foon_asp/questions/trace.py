@@ -178,7 +178,7 @@ def _stated_stock(problem: Problem) -> dict[ObjectNode, int]:
 def _copies_after_steps(problem: Problem, replay: Replay) -> Iterator[dict[ObjectNode, int]]:
     """Yield the number of copies by node: before the first step, and after each step.
 
-    Nodes without a copy are left out. Available nodes without a stock never run out, and are left out, too.
+    Nodes without a copy are left out, and so are available nodes without a stock, which never run out.
     """
     stock = _stated_stock(problem)
     counts = Counter({node: n for node, n in stock.items() if problem.at_hand(node)})
@@ -324,7 +324,7 @@ def trace(
     network = tree.problem.network
     replay = replay_for(replayable_problem(tree.problem, tree), tree)
     states = tuple(_copies_after_steps(tree.problem, replay))
-    lack, answer = replay.shortage, None
+    shortage, answer = replay.shortage, None
     if failed is not None:
         if not 1 <= failed <= len(replay.steps):
             last = len(replay.steps)
@@ -341,7 +341,7 @@ def trace(
     traced = Traced(
         **question_fields(tree.problem),
         executed=tuple(executed),
-        stopped=None if lack is None else tree.lack_text(lack_of(network, lack)),
+        stopped=None if shortage is None else tree.lack_text(lack_of(network, shortage)),
         failed=failed,
         answer=answer,
     )
@@ -353,6 +353,7 @@ def _problem_from_state(problem: Problem, copies: dict[ObjectNode, int]) -> Prob
 
     ``copies`` has the number of copies by node in this state. If items last, these nodes are added to the
     kitchen. If items are used up, the copies are the stock, and nodes that never run out stay available.
+    Nodes that the network lacks are not added to the kitchen.
     """
     problem = problem.whole
     network = problem.network

@@ -70,6 +70,8 @@ class Tree(TaskTree):
     def given(cls, problem: Problem, units: Iterable[FunctionalUnit], places: Iterable[Source] = ()) -> Self:
         """Make a tree from units as values, which need not be in the network.
 
+        Units are reduced to the level of detail of the network.
+
         Parameters:
             problem: The problem that the tree is for. If its network is a part of a store, the problem of the
                 tree has the units, too, unless the store lacks them.

@@ -117,7 +117,8 @@ def unit_union(
         The ``units``, each with ``trees``; ``complete`` tells whether everything is proved.
 
     Raises:
-        UserError: for a wrong argument or constraint, or for constraints together with ``within``.
+        UserError: for a wrong argument or constraint, for constraints together with ``within``, or for a
+            problem whose items are used up.
 
     Example:
         >>> found = foon_asp.unit_union(foon_asp.load().problem("macaroni"))

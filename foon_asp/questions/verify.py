@@ -345,7 +345,7 @@ def verify(
             own.
         full: Read all of a store, and compute the digests that are otherwise taken as the store states them.
         proved: Also ask the checker that is proved in Coq, which `make verified` builds. All of a store is
-            then read.
+            then read, and digests are computed, as with ``full``.
 
     Returns:
         What the certificate proves.
@@ -387,7 +387,8 @@ def _verify_content(
 
     ``full`` reads all of a store. ``with_clingo`` checks measures and rules with clingo, and ``proved`` also
     asks the checker proved in Coq. Raises :class:`RefusedError` for a wrong certificate, and
-    :class:`OtherDataError` for other data.
+    :class:`OtherDataError` for other data. A certificate is also wrong if it states other rules for a measure
+    than the data.
     """
     dataset = foon.dataset
     subject = _subject_of(dataset, content, full)
@@ -444,7 +445,7 @@ def _differing_part(content: Any, subject: Subject) -> str | None:
     """Return the name of the first part of the data whose digest differs from that in the certificate.
 
     The name is ``task`` for a certificate about a planning task. It is ``None`` if no part differs, or if the
-    certificate itself is damaged.
+    certificate itself is damaged. The places that units come from are not compared.
     """
     with suppress(RecursionError, KeyError, TypeError, AttributeError):  # the content is no certificate
         if content["seal"] == seal(content):

@@ -351,7 +351,8 @@ def view(
     """Solve a problem, and show what was found on a page or as a picture; or show what is given.
 
     A given tree, some units or a whole network are shown without solving; for these, there are no
-    ``objectives``, rules and limits. The limits are for the whole question.
+    ``objectives``, rules and limits. The limits are for the whole question. If ``about`` is an answer, all
+    other arguments are ignored.
 
     Parameters:
         about: A problem, whose goals are marked; data that were loaded, whose whole network is shown; or an
@@ -415,7 +416,10 @@ def view(
 
 
 def _units_drawing(about: Problem | Foon, unit_ids: Sequence[int]) -> Drawing:
-    """Return the drawing of some units, by id in the whole network; the goals of a problem are marked."""
+    """Return the drawing of some units, by id in the whole network; the goals of a problem are marked.
+
+    Raises :class:`UserError` for an id that the network does not have.
+    """
     goal_ids: Sequence[int] = ()
     if isinstance(about, Problem):
         posed = without_reading_more(about)
@@ -463,8 +467,10 @@ def pages(
       costs less than this answer, except by ``kitchen``; there is no proof by ``kitchen``.
     - Under rules: the answer without them.
     - If there is no tree: why, and a shopping list unless rules are the reason. This is the last part. It is
-      left out if there is no plan only because items run out.
-    - The searches, the alternatives and the front, as far as they are wanted.
+      left out where items run out: if they lasted, there would be a tree.
+    - The searches, the five best alternatives and the front, as far as they are wanted.
+
+    The limits of ``settings`` are for all pages together.
     """
     deadline = settings.effective_deadline
     settings = settings._replace(deadline=deadline)

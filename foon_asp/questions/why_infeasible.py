@@ -8,7 +8,11 @@ from foon_asp.problem import Problem, reach
 
 
 def why_infeasible(problem: Problem, deadline: Deadline | None = None) -> Iterator[str]:
-    """Yield lines with the reasons why there is no tree; one line refers to ``why-not`` if time runs out."""
+    """Yield lines with the reasons why there is no tree.
+
+    If a limit or ctrl-C stops the search for reasons, yield instead one line that refers to ``why-not``. The
+    interrupt is not raised.
+    """
     try:
         with (deadline or Deadline()).watched("looking for the reason", late=True, grace=True):
             lines = list(_reason_lines(problem))

@@ -150,7 +150,10 @@ class Root(Value, frozen=True):
         )
 
     def lines(self) -> Iterator[str]:
-        """Yield lines on why the node cannot be had, and similar names that were perhaps meant."""
+        """Yield lines on why the node cannot be had, and similar names that were perhaps meant.
+
+        Nodes with the same label are named only if no name is one edit away.
+        """
         if self.cycle is not None:
             yield "can only be made from itself, in a cycle:"
             made = [*(step.object for step in self.cycle[1:]), self.cycle[0].object]
@@ -268,7 +271,10 @@ class Explanation(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name
                 yield f"    for {stand_in.stands_in_for}"
 
     def _fix_line(self) -> str:
-        """Return one line on which nodes to add to the kitchen, or on how to find them."""
+        """Return one line on which nodes to add to the kitchen, or on how to find them.
+
+        Up to four nodes are named, and the others counted.
+        """
         if self.fix is None:
             return "foon-asp shopping-list with the same options says what to add to the kitchen"
         named = [str(node) for node in self.fix[: _MAX_SHOWN.fix_items]]
@@ -311,7 +317,7 @@ def why_not(
 
     The time grows about linearly with the network, and all of a store is read. If every goal can be made and
     there are ``constraints`` or ``encodings``, those that clash are found. At a limit, or when interrupted,
-    similar names and the items that would help are left out.
+    similar names, stand-ins and the items that would help are left out.
 
     Parameters:
         weights: What it costs to drop a constraint of a file, 1 if not given.
@@ -332,12 +338,12 @@ def why_not(
         >>> len(found.smallest_clash), len(found.cheapest_to_drop)
         (2, 1)
     """
-    settings, prices = settings_of(options), constraint_weights(weights) if weights else {}
+    settings, weight_of_constraint = settings_of(options), constraint_weights(weights) if weights else {}
     problem, deadline = over_whole_network(problem), settings.effective_deadline
     network = problem.network
     with deadline.watched("looking for the reason", late=True):
         analysis = dead_ends(problem)
-        ends = tuple(
+        dead_end_values = tuple(
             DeadEnd(
                 node_of(network, o),
                 tuple(
@@ -353,7 +359,7 @@ def why_not(
     if not analysis.goals and (settings.constraints or settings.replaced is not None):
         from foon_asp.questions.clash import find_clash  # noqa: PLC0415
 
-        clash = find_clash(problem, settings, prices)
+        clash = find_clash(problem, settings, weight_of_constraint)
     with contextlib.suppress(KeyboardInterrupt), deadline.watched("looking for what would help"):
         if analysis.goals:
             roots = tuple(_with_near_names(problem, analysis, roots))
@@ -364,7 +370,7 @@ def why_not(
         tree_exists=not analysis.goals,
         unreachable_goals=nodes_of(network, analysis.goals),
         roots=roots,
-        dead_ends=ends,
+        dead_ends=dead_end_values,
         clash=clash,
         fix=fix,
         stand_ins=stand_ins,
@@ -374,8 +380,9 @@ def why_not(
 def _cheapest_stand_ins(problem: Problem, settings: "Settings") -> tuple[StandIn, ...] | UnsetType:
     """Return the cheapest stand-ins of the usual table with which there is a tree without rules.
 
-    Return ``UNSET`` if none are enough or a limit comes first. Return it also where stand-ins cannot be used:
-    below level 3, for items that are used up, and in a problem that has stand-ins already.
+    If a limit stops the search, they are the cheapest found. Return ``UNSET`` if no stand-ins are enough, or
+    if none were found before the limit. Return it also where stand-ins cannot be used: below level 3, for
+    items that are used up, and in a problem that has stand-ins already.
     """
     level, has_motion = problem.network.level, STAND_IN in problem.network.different_motions
     if level < 3 or problem.items is not None or has_motion:
@@ -383,15 +390,15 @@ def _cheapest_stand_ins(problem: Problem, settings: "Settings") -> tuple[StandIn
     from foon_asp.asp.optimum import solve  # noqa: PLC0415 (only where there is no tree)
 
     posed = with_stand_ins(problem, StandInTable.usual())
-    plain = settings._replace(constraints=(), constants=(), encodings=None)
-    outcome = solve(posed, (Objective.DISSIMILARITY,), plain)
+    settings_without_rules = settings._replace(constraints=(), constants=(), encodings=None)
+    outcome = solve(posed, (Objective.DISSIMILARITY,), settings_without_rules)
     return UNSET if outcome.units is None else stand_ins_in(posed, outcome.units)
 
 
 def _with_near_names(problem: Problem, analysis: DeadEnds, roots: Iterable[Root]) -> Iterator[Root]:
-    """Yield the causes, those that are missing nodes with similar names that were perhaps meant.
+    """Yield the causes; a missing node gets similar names that were perhaps meant, a cycle is unchanged.
 
-    These are names one edit away (``near``), and up to two other nodes with the same label (``alike``). All
+    Similar are names one edit away (``near``), and up to two other nodes with the same label (``alike``). All
     are available, or entries of the kitchen file that match no node.
     """
     network, kitchen, origin = problem.network, problem.kitchen, problem.origin

@@ -9,7 +9,7 @@ from foon_asp.searches.ties import least_chooser
 def greedy_inputs(problem: Problem, settings: SearchSettings) -> Retrieval:
     """Retrieve a tree that has, for each object, the achiever with the fewest inputs.
 
-    Ingredients of inputs count, too, unless ``count`` of the settings is ``nodes``.
+    Ingredients of inputs also count, unless ``count`` of the settings is ``nodes``.
 
     The choice is locally optimal only: the number of inputs of the tree may be far from the optimum, and the
     tree may not execute.

@@ -19,7 +19,7 @@ def iterative_deepening(problem: Problem, settings: SearchSettings) -> Retrieval
     search ends.
 
     At a limit of the ``settings`` (depth, time or memory), the ending is ``unknown``. With ``published``,
-    breadth-first retrieval is run instead, as the published programs do under this name.
+    breadth-first retrieval is run instead, with its ``ties``, as the published programs do under this name.
     """
     if settings.published:
         return breadth_first(problem, settings)
@@ -93,7 +93,11 @@ class _DepthLimited:
         return goal in self.solved and self.solved[goal][0] <= limit
 
     def solves_more(self, limit: int) -> bool:
-        """Return whether some relevant object can be made within this limit, and not within smaller ones."""
+        """Return whether some relevant object can be made within this limit, and not within smaller ones.
+
+        The search ends with the first such object. Results are recorded as in :meth:`solve`. Raises
+        ``TimeoutError`` at the deadline.
+        """
         earlier = {o for o in self.objects if o in self.solved and self.solved[o][0] < limit}
         return any(o not in earlier and self.solve(o, limit) for o in self.objects)
 

@@ -41,7 +41,8 @@ def search_names() -> tuple[str, ...]:
 def find_searches() -> dict[str, Search]:
     """Return all searches by name, those of other packages last; the packages are not imported.
 
-    Raises :class:`UserError` if a package offers a search under a name that another search has.
+    Raises :class:`UserError` if a package offers a search under a name that another search has. The name
+    ``optimum`` is taken as well.
     """
     offers = offers_by_name(find_offers(ENTRY_POINTS), [*SEARCHES, _OPTIMUM])
     return {**SEARCHES, **{name: offered_search(offer) for name, offer in offers.items()}}

@@ -14,8 +14,8 @@ class SearchSettings:
 
     ``ties``: which of equally good units all searches but ``ids`` choose.
     ``count``: what ``greedy-inputs`` counts.
-    ``published``: whether ``ids`` is the published iterative deepening, which always chooses the first unit
-    and so is breadth-first retrieval.
+    ``published``: whether ``ids`` is the published iterative deepening, which is breadth-first retrieval
+    with its ``ties``.
     ``depth_limit``: the greatest depth of trees that ``ids`` tries; ``None`` for no limit.
     ``time_limit``: the limit in seconds; ``None`` for no limit.
     ``memory_limit``: the limit in bytes; ``None`` for no limit.

@@ -148,7 +148,10 @@ def compare_networks(
 def _amount_differences(
     networks: Sequence[Network], amounts: tuple[Amounts, Amounts]
 ) -> Iterator[AmountDifference]:
-    """Yield the amounts in which units of both networks differ, in the order of the first network."""
+    """Yield the amounts in which units of both networks differ, in the order of the first network.
+
+    An amount that is not stated is 1.
+    """
     (a, b), (amounts_a, amounts_b) = networks, amounts
     for unit_id in range(len(a)) if amounts_a or amounts_b else ():
         unit = a.unit(unit_id)

@@ -171,7 +171,8 @@ _Origin = FunctionalUnit | bool
 def _origins(tree: Tree, goals: Sequence[ObjectNode]) -> dict[ObjectNode, _Origin]:
     """Return the origin of each node that a tree needs for ``goals``, breadth first from these backwards.
 
-    A unit that needs a node itself does not make it.
+    A unit that needs a node itself does not make it. The kitchen is the origin of its nodes, also if a unit
+    makes them.
     """
     problem = tree.problem
     container_rule = problem.containers, problem.utensils, problem.network
