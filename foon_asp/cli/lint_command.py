@@ -249,7 +249,10 @@ def _write_repairs(repaired: _Repaired, contents: Mapping[Path, bytes]) -> dict[
 
 
 def _show_repairs(repaired: _Repaired, finding_count: int) -> ExitCode:
-    """Print the diff of the repairs, and print ``finding_count``; return ``NEGATIVE`` for a change."""
+    """Print the diff of the repairs; return ``NEGATIVE`` if a file would change, else ``DONE``.
+
+    ``finding_count`` is the number of findings that would be repaired, which is printed to stderr.
+    """
     for file, (old_content, new_content) in repaired.items():
         show_diff(str(file), plain_text(old_content, file), plain_text(new_content, file))
     changed = sum(old_content != new_content for old_content, new_content in repaired.values())

@@ -152,7 +152,7 @@ def _describe_struct(schema: Json, bases: Sequence[type]) -> None:
 def _require_written(schema: Json) -> None:
     """Require, in place, the keys that are always written; fields that may be unset stay optional.
 
-    If no key is required, at least one key has to be there.
+    If no key is required, at least one key has to be there. Default values are removed from the schema.
     """
     fields = schema["properties"]
     written = {name for name in fields if fields[name].pop("default", _UNSET) is not _UNSET}

@@ -22,10 +22,10 @@ def flat_row(row: Json) -> Json:
     values are left out.
     """
     return {
-        name: value
+        flat_name: value
         for name, inner in row.items()
         if name != "schema"
-        for name, value in _flat_items(name, inner)
+        for flat_name, value in _flat_items(name, inner)
     }
 
 
@@ -73,8 +73,9 @@ def table_cells(
 ) -> tuple[Sequence[str], list[list[Any]]]:
     """Return the names of the columns of flat rows, and a list of cells for each row.
 
-    ``columns`` are the names to use; by default, all keys in the rows. A cell is ``None`` if the row has no
-    value. In a column of exact numbers, the cell of a whole number is the number as text.
+    ``columns`` are the names to use. By default, they are all keys in the rows, except a key such as
+    ``costs`` if a row has ``costs.units``. A cell is ``None`` if the row has no value. In a column of exact
+    numbers, the cell of a whole number is the number as text.
     """
     rows = list(rows)
     if columns is None:

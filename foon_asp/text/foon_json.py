@@ -82,7 +82,8 @@ class FoonJson(Format):
     def canonical_text(self, text: str, file: str, lenient: bool = False) -> str:
         """Return JSON laid out anew; a line end after the last bracket is neither added nor removed.
 
-        For a text that is not JSON, raises :class:`InputError`; with ``lenient``, returns it unchanged.
+        All lines get the most frequent line end. For a text that is not JSON, raises :class:`InputError`;
+        with ``lenient``, returns it unchanged.
         """
         try:
             check_json(text, file)
