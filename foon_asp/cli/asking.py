@@ -95,6 +95,7 @@ def _subjects(question: Question, command: "_Command", values: Mapping[str, Any]
 
     There is one call, or one for each of several goals if the command names none. If a command names no goals
     or no data, a file with a tree may name them. Assumed goals and kitchen items are printed to stderr.
+    Raises :class:`UserError` if the results for several goals would be written into one file.
     """
     problem_options = values_with_role(question, values, Role.PROBLEM)
     tree = values.get("tree")

@@ -81,6 +81,8 @@ class ProofCases(Value, frozen=True):
     def of(cls, problem: Problem, content: Json) -> Self:
         """Return the cases of the proof in a certificate about a problem.
 
+        Cases that take the choice of a branch come before those that exclude it.
+
         Parameters:
             problem: The problem.
             content: The certificate as plain values.

@@ -121,7 +121,7 @@ def _colour(text: str, cell: str | Cell, coloured: bool, heading: bool) -> str:
 def _fold(line: str, width: int | None) -> list[str]:
     """Return a line folded between words to a width of at least 20; further lines are indented.
 
-    ``None`` for the width leaves the line whole.
+    ``None`` for the width leaves the line whole. A word that is longer than the width stays whole.
     """
     if width is None or len(line) <= width:
         return [line]

@@ -110,7 +110,8 @@ def csv_text(rows: Iterable[Json], names: Sequence[str] | None = None) -> str:
 def safe_cell(text: str) -> str:
     """Return the text of a cell with control characters escaped.
 
-    If spreadsheets would take it for a formula, it stands behind an apostrophe.
+    If spreadsheets would take it for a formula, it stands behind an apostrophe. A number such as ``-1`` does
+    not.
     """
     text = escaped(text)  # of what begins a formula, tabs and line ends
     return f"'{text}" if text[:1] in {"=", "+", "-", "@"} and not _WRITTEN_NUMBER.fullmatch(text) else text
@@ -140,7 +141,7 @@ def markdown_row(cells: Iterable[str]) -> str:
 
 
 def _rounded_cell_text(value: Any) -> str:
-    """Return a cell as text, with floats in six digits."""
+    """Return a cell as text, with floats in six digits; a float that is whole has no decimal point."""
     if isinstance(value, float):
         return str(int(value)) if value.is_integer() else f"{value:.6g}"
     return _cell_text(value)

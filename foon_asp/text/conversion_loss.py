@@ -89,7 +89,10 @@ def _lost_fields(fields: tuple[str, ...], converted: tuple[str, ...]) -> Iterato
 
 
 def _lost_times(fields: MotionFields, converted: MotionFields) -> Iterator[Loss]:
-    """Yield ``TIMES`` if the times of two motion lines differ, and ``RATES`` if entity or success rate do."""
+    """Yield ``TIMES`` if the times of two motion lines differ, and ``RATES`` if entity or success rate do.
+
+    Times in one field, ``<0:14,0:20>``, do not differ from the same times in two fields.
+    """
     if in_two_fields(fields.times) != in_two_fields(converted.times):
         yield Loss.TIMES
     if fields[1:] != converted[1:]:

@@ -68,7 +68,10 @@ class FoonJson(Format):
         return read_json_objects(text, file, reading)
 
     def lines(self, text: str) -> Iterator[Line]:
-        """Yield objects and motions as lines of FOON text; parts that cannot be understood are left out."""
+        """Yield objects and motions as lines of FOON text; parts that cannot be understood are left out.
+
+        The motion of a unit comes before its objects.
+        """
         reading = Reading(lenient=True)
         if self.lists_objects(text):
             for block, _ in self.objects(text, "", reading):

@@ -89,7 +89,10 @@ class TextUnits:
         self._sections = 0  # between separators, with anything in them, so far
 
     def units(self) -> Iterator[ReadUnit]:
-        """Yield the units in order, without their lines."""
+        """Yield the units in order, without their lines but with their amounts.
+
+        A node that a unit lists twice has the greatest of its amounts.
+        """
         for chunk, last in self._chunks():
             unit = None if last else self._clean_unit(chunk)
             if unit:
@@ -329,7 +332,10 @@ class TextUnits:
         return Source(self.file, self._number + index, column)
 
     def _report_remarks(self, line: Line, index: int) -> None:
-        """Record the remarks on a line as warnings, with the line in canonical form as their fix."""
+        """Record the remarks on a line as warnings, with the line in canonical form as their fix.
+
+        If the line is in canonical form already, the warnings have no fix.
+        """
         if line.remarks:
             mended = write_line(line)
             fix = mended if mended != self._lines[index] else None
