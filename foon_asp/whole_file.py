@@ -56,10 +56,10 @@ def write_all_whole(contents: Mapping[Path, bytes]) -> None:
             for file, content in contents.items():
                 target = Path(os.path.realpath(file))
                 staged_files.append((target, stack.enter_context(_staged_file(target, content))))
-            for target, partial in staged_files:
+            for target, partial_path in staged_files:
                 old_content = target.read_bytes()
                 old_contents[target] = old_content
-                partial.replace(target)
+                partial_path.replace(target)
     except BaseException as error:
         for target, old_content in old_contents.items():
             if target.read_bytes() != old_content:
@@ -88,8 +88,8 @@ def utf_8(text: str) -> bytes:
 
 def _replace(target: Path, content: bytes) -> None:
     """Replace a file by a new one, which is written beside it and renamed."""
-    with _staged_file(target, content) as partial:
-        partial.replace(target)
+    with _staged_file(target, content) as partial_path:
+        partial_path.replace(target)
 
 
 @contextlib.contextmanager
@@ -106,22 +106,22 @@ def _staged_file(target: Path, content: bytes) -> Iterator[Path]:
         with target.open("ab"):  # may it be written? Renaming asks the folder alone
             old_status = target.stat()
     _remove_leftovers(target.parent)
-    partial, partial_file = _create_locked_file(target.parent)
+    partial_path, partial_file = _create_locked_file(target.parent)
     try:
         with partial_file:
             partial_file.write(content)
             partial_file.flush()
             os.fsync(partial_file.fileno())
             if old_status is not None:
-                copy_permissions(old_status, partial)
+                copy_permissions(old_status, partial_path)
             # Windows renames no open file; and a process may have 1,024 open, and rename writes many
             if fcntl is None or partial_file.fileno() > 500:
                 partial_file.close()
-            yield partial
+            yield partial_path
         if old_status is not None:
             warn_of_replaced(target, old_status)
     finally:
-        partial.unlink(missing_ok=True)
+        partial_path.unlink(missing_ok=True)
 
 
 def _create_locked_file(folder: Path) -> tuple[Path, BinaryIO]:
@@ -130,10 +130,10 @@ def _create_locked_file(folder: Path) -> tuple[Path, BinaryIO]:
     The file is locked until it is closed, where files can be locked.
     """
     while True:
-        partial = folder / f".foon-asp.{os.urandom(8).hex()}"
-        partial_file = partial.open("xb")
-        if _try_lock(partial_file.fileno(), otherwise=True) and partial.exists():
-            return partial, partial_file
+        partial_path = folder / f".foon-asp.{os.urandom(8).hex()}"
+        partial_file = partial_path.open("xb")
+        if _try_lock(partial_file.fileno(), otherwise=True) and partial_path.exists():
+            return partial_path, partial_file
         partial_file.close()  # before the lock, another process took the file for a leftover
 
 

@@ -30,7 +30,7 @@ def read_questions(
 
     Files that questions name are relative to the folder of the file. ``time_limit``, in seconds, is for
     questions without a time limit. ``measures`` are the names of user-defined objectives. A goal may be a
-    word for many goals, such as ``@makeable``.
+    word for many goals, such as ``@makeable``. Blank lines are skipped.
 
     Raises :class:`InputError` with all wrong lines, and :class:`UserError` if there is no question.
     """

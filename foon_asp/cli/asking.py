@@ -51,7 +51,8 @@ def ask(
 
     ``values`` are the values of all options by name. ``form`` is the chosen format of the result, or ``None``
     for the default format. If no goal is named and there are several, the question is called for each one,
-    and the result is an :class:`EachGoal`. Progress is shown at a terminal.
+    and the result is an :class:`EachGoal`. Progress is shown at a terminal. A file of measures that has no
+    effect causes a warning.
     """
     option_names = {option.name for option in question.options}
     command = _Command({name: value for name, value in values.items() if name not in option_names})
@@ -71,7 +72,10 @@ def ask(
 
 
 def _warn_of_measures(command: "_Command", values: Mapping[str, Any]) -> None:
-    """Print a warning for each ``--measure`` file of which no measure is an objective of the question."""
+    """Print a warning for each ``--measure`` file of which no measure is an objective of the question.
+
+    For a question without objectives, nothing is printed.
+    """
     chosen = values.get("objectives")
     if not command.names_measures or chosen is None:
         return
@@ -91,6 +95,7 @@ def _subjects(question: Question, command: "_Command", values: Mapping[str, Any]
 
     There is one call, or one for each of several goals if the command names none. If a command names no goals
     or no data, a file with a tree may name them. Assumed goals and kitchen items are printed to stderr.
+    Raises :class:`UserError` if the results for several goals would be written into one file.
     """
     problem_options = values_with_role(question, values, Role.PROBLEM)
     tree = values.get("tree")

@@ -27,7 +27,10 @@ def completed_words(context: click.Context, parameter: click.Parameter, prefix: 
 
 
 def _read_dataset(context: click.Context) -> Dataset:
-    """Read the data that the incomplete command line names, without lines that are not understood."""
+    """Read the data that the incomplete command line names, by default the bundled data.
+
+    Lines that are not understood are left out.
+    """
     parameters = context.params
     # an option without its value stops click before it assigns arguments to names
     sources = parameters.get("sources") or filter(os.path.exists, context.args)

@@ -157,9 +157,9 @@ def _summary(tasks: list[_Task], results: list[Converted], target: Dialect, left
     losses = [(kind, lost) for result in results for kind, lost in result.lost.items()]
     counted_losses = []
     for kind in dict.fromkeys(kind for kind, _ in losses):
-        of_kind = [lost for lost_kind, lost in losses if lost_kind is kind]
-        count = sum(lost.occurrences for lost in of_kind)
-        counted_losses.append((count, f"{kind}; first at {of_kind[0].first}"))
+        losses_of_kind = [lost for lost_kind, lost in losses if lost_kind is kind]
+        count = sum(lost.occurrences for lost in losses_of_kind)
+        counted_losses.append((count, f"{kind}; first at {losses_of_kind[0].first}"))
     if left_out:
         counted_losses.append((left_out, "lines that are in no unit; see the warnings"))
     if not counted_losses:

@@ -103,7 +103,7 @@ def _read_recipe(recipe: Path | None) -> tuple[Data, Path]:
 def _starter_texts(data: Data, source: Path, recipe: Path | None) -> dict[str, str]:
     """Return the texts of all files of a new data folder, by name.
 
-    A recipe in FOON text is put into canonical form; from another format, it is written as FOON text.
+    A recipe in FOON text is put into canonical form. A folder or another format is written as FOON text.
     ``source`` is the path of the recipe. ``recipe`` is the same path, or ``None`` for the bundled recipe,
     which comes with success rates.
     """

@@ -38,7 +38,10 @@ def _complete_code(_: click.Context, __: click.Parameter, incomplete: str) -> li
 
 
 def _explain(context: click.Context, _: click.Parameter, code: str | None) -> None:
-    """Print the explanation of a code, and end the command; without a code, do nothing."""
+    """Print the explanation of a code, and end the command; without a code, do nothing.
+
+    Raises :class:`UserError` for an unknown code.
+    """
     if code is None or context.resilient_parsing:
         return
     if code not in CATALOG:
@@ -240,7 +243,10 @@ def _repair(found: Findings, contents: Mapping[Path, bytes], unsafe: bool) -> _R
 
 
 def _write_repairs(repaired: _Repaired, contents: Mapping[Path, bytes]) -> dict[Path, bytes]:
-    """Write the repaired files that changed, except those in ``contents``; return ``contents``, repaired."""
+    """Write the repaired files that changed, except those in ``contents``; return ``contents``, repaired.
+
+    Each written file is reported on stderr.
+    """
     for file, (old_content, new_content) in repaired.items():
         if old_content != new_content and file not in contents:
             write_whole(file, new_content)
@@ -249,7 +255,10 @@ def _write_repairs(repaired: _Repaired, contents: Mapping[Path, bytes]) -> dict[
 
 
 def _show_repairs(repaired: _Repaired, finding_count: int) -> ExitCode:
-    """Print the diff of the repairs, and print ``finding_count``; return ``NEGATIVE`` for a change."""
+    """Print the diff of the repairs; return ``NEGATIVE`` if a file would change, else ``DONE``.
+
+    ``finding_count`` is the number of findings that would be repaired, which is printed to stderr.
+    """
     for file, (old_content, new_content) in repaired.items():
         show_diff(str(file), plain_text(old_content, file), plain_text(new_content, file))
     changed = sum(old_content != new_content for old_content, new_content in repaired.values())

@@ -16,6 +16,6 @@ def command() -> ExitCode:
     with the units that make and need a node, and whether it is available; jumps to the unit that makes it;
     renaming; an outline of the units; folding and formatting. docs/editor.md says how to set up an editor.
 
-    Exits with 0 when the editor ends it.
+    Exits with 0 when the editor ends it, and with 1 when it sends exit before shutdown.
     """
     return ExitCode.DONE if serve_editor() else ExitCode.NEGATIVE

@@ -52,7 +52,10 @@ class _Verbs(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """Find the command of a verb; for an unknown verb, fail and name the most similar verb."""
+        """Find the command of a verb; for an unknown verb, fail with a hint.
+
+        The hint says what replaces a verb that no longer exists, or else names the most similar verb.
+        """
         word = args[0]
         if word not in VERBS and not word.startswith("-") and not ctx.resilient_parsing:
             from difflib import get_close_matches

@@ -97,7 +97,10 @@ class Progress(Reporter):
         self._step = (word, done, total)
 
     def line(self, now: float) -> str:
-        """Return the line at the time ``now`` of the monotonic clock."""
+        """Return the line at the time ``now`` of the monotonic clock.
+
+        If steps are counted, they stand in place of the incumbent and the bound.
+        """
         from foon_asp.results.figure_text import bound_text, costs_text  # slow to import: for long searches
 
         seconds = f"{now - self._began:.0f} s"

@@ -108,7 +108,8 @@ def _kind_of_name(old: str, kind: str | None, texts: Mapping[Path, str]) -> str:
     counts: Counter[tuple[str, str]] = Counter()
     for file, text in texts.items():
         counts.update(
-            (str(kind), name) for kind, name, _ in format_of(text, str(file)).mentions(text, str(file))
+            (str(name_kind), name)
+            for name_kind, name, _ in format_of(text, str(file)).mentions(text, str(file))
         )
     kinds = [possible for possible in NameKind if counts[possible, old]]
     if kind is not None and kind in kinds:
@@ -116,7 +117,7 @@ def _kind_of_name(old: str, kind: str | None, texts: Mapping[Path, str]) -> str:
     if kinds and kind is not None:
         raise UserError(f"{old!r} is no {kind}; it is {_with_article(kinds[0])}")
     if len(kinds) > 1:
-        kinds_text = " and ".join(f"{_with_article(kind)} ({counts[kind, old]} times)" for kind in kinds)
+        kinds_text = " and ".join(f"{_with_article(each)} ({counts[each, old]} times)" for each in kinds)
         raise UserError(f"{old!r} is {kinds_text}: choose one with --kind")
     if not kinds:
         similar = difflib.get_close_matches(old, sorted({name for _, name in counts}), n=3, cutoff=0.7)

@@ -66,7 +66,7 @@ def _serve(question_values: dict[str, Any], data_values: dict[str, Any], deadlin
         items=question_values["items"],
         beside=tuple(question_values["beside"]),
     )
-    rules = settings_of(
+    settings = settings_of(
         {
             "constraints": question_values["constraints"],
             "constants": question_values["constants"],
@@ -75,8 +75,8 @@ def _serve(question_values: dict[str, Any], data_values: dict[str, Any], deadlin
     )
     example = dataset.problem((0,), form.containers)
     # to report errors in files of rules before the page is opened
-    assemble(rules, functools.partial(click.echo, err=True), problem=example)
+    assemble(settings, functools.partial(click.echo, err=True), problem=example)
     used_up = items_of(dataset, question_values["items"], question_values["stock"], question_values["stays"])
-    desk = Desk(Foon(dataset, "the data"), form, deadline.seconds, deadline.memory, rules, used_up)
+    desk = Desk(Foon(dataset, "the data"), form, deadline.seconds, deadline.memory, settings, used_up)
     serve_desk(desk, lambda address: click.echo(f"{address}\nopen this in a browser; ctrl-C ends it"))
     return ExitCode.DONE

@@ -320,7 +320,7 @@ class Network:
         return near_labels(label, self.by_label, max_labels)
 
     def find(self, pattern: NodePattern) -> tuple[int, ...]:
-        """Return the ids of the nodes that match an entry of a kitchen or goals file.
+        """Return the ids of the nodes that match an entry of a kitchen or goals file, in rising order.
 
         Parameters:
             pattern: The entry.

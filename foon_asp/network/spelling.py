@@ -39,10 +39,10 @@ def one_letter_apart(word: str, other: str) -> bool:
 
 
 def near_labels(label: str, labels: Iterable[str], max_labels: int) -> list[str]:
-    """Return up to ``max_labels`` labels similar to ``label``, most similar first.
+    """Return the labels most similar to ``label``, the most similar first.
 
-    Similarity is measured by :mod:`difflib`, in lower case, and is at least 0.6. Labels that differ only in
-    case count once, and are all returned.
+    Similarity is measured by :mod:`difflib`, in lower case, and is at least 0.6. At most ``max_labels``
+    labels are returned, where labels that differ only in case count as one.
     """
     import difflib  # noqa: PLC0415 (for faults alone)
 

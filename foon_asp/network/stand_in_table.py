@@ -130,7 +130,8 @@ class StandInTable(NamedTuple):
 
         The price is ``None`` if the edit is never allowed. If the table has the pair of nodes, this is the
         only edit. Different labels whose pair the table lacks are an edit of spelling if they are spelled
-        alike; otherwise they are never allowed.
+        alike; otherwise they are never allowed. Two relations to one object are an edit of the word. All
+        other different relations are paired in alphabetical order, each pair as an edit of the container.
         """
         if (serving, served) in self.pairs:
             yield Edit.NODE, str(served), str(serving), self.pairs[serving, served]
@@ -162,7 +163,11 @@ class StandInTable(NamedTuple):
     def _content_edits(
         self, serving: ObjectNode, served: ObjectNode
     ) -> Iterator[tuple[Edit, str, str, Fraction | None]]:
-        """Yield the edits between the contents of two nodes, each as :meth:`_node_edits` yields it."""
+        """Yield the edits between the contents of two nodes, each as :meth:`_node_edits` yields it.
+
+        Contents with equal ingredients are one edit of the word. Otherwise each different ingredient is an
+        edit. If at most half of the ingredients are common, ``CONTENTS`` is an edit before these.
+        """
         if serving.contents == served.contents:
             return
         served_parts, serving_parts = Counter(served.ingredients), Counter(serving.ingredients)
@@ -191,7 +196,8 @@ def spelled_alike(label: str, other: str) -> bool:
 def spelling_key(label: str) -> str:
     """Return a label in lower case and in the singular, without blanks, hyphens and underscores.
 
-    Labels with the same key count as spelled alike. The key of ``Cherry tomatoes`` is ``cherrytomato``.
+    Labels with the same key count as spelled alike. A label of up to three letters is taken for a singular.
+    The key of ``Cherry tomatoes`` is ``cherrytomato``.
     """
     letters = label.casefold().replace(" ", "").replace("-", "").replace("_", "")
     for plural, singular in _PLURALS.items():

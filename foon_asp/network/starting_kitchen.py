@@ -114,7 +114,8 @@ class StartingKitchen(ABC, Generic[File]):
         """Return the nodes that these goals add to the kitchen, and those that they remove from it.
 
         A goal is removed if the units of one file can make it from other nodes than goals. Other nodes of the
-        file may be granted in its place. Added nodes may be in the kitchen already.
+        file may be granted in its place. Added nodes may be in the kitchen already. Goals that are not in the
+        kitchen, or that no unit makes without needing them, change nothing.
         """
         goals = [goal for goal in goals if goal in self.nodes and self.makers(goal)]
         kitchens = {

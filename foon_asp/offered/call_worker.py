@@ -28,9 +28,9 @@ def _call(
 ) -> bytes:
     """Call the function of an offer, and return a line of JSON with a kind and a value.
 
-    The kind ``reply`` has the value that the function returned. ``raised`` has the parts of
-    :class:`Raised`, if the function raised an exception. ``fault`` has a complaint and a traceback, if the
-    function or its reply cannot be used; the traceback may be empty. ``functions`` are those imported so
+    The kind ``reply`` has the value that the function returned. ``raised`` has the parts of :class:`Raised`,
+    if the function raised an exception, also ``SystemExit``. ``fault`` has a complaint and a traceback, if
+    the function or its reply cannot be used; the traceback may be empty. ``functions`` are those imported so
     far; a new one is added.
     """
     if offer not in functions:

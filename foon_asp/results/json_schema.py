@@ -51,7 +51,10 @@ _OWN: dict[Any, tuple[str, Json]] = {
 
 
 def schema_of(document: type[Struct]) -> Json:
-    """Return the JSON Schema (draft 2020-12) of a class of documents; it refers to no other schema."""
+    """Return the JSON Schema (draft 2020-12) of a class of documents; it refers to no other schema.
+
+    Title and descriptions are from docstrings. Keys that the class does not have are forbidden.
+    """
     (top,), definitions = msgspec.json.schema_components(
         [document], schema_hook=_schema_of_type, ref_template=_REFERENCE
     )
@@ -112,7 +115,10 @@ def _put_null_last(schema: Any) -> None:
 
 
 def _schema_of_type(kind: type) -> Json:
-    """Return the schema of a type that msgspec does not know: a number, costs, an objective or a path."""
+    """Return the schema of a type that msgspec does not know: a number, costs, an objective or a path.
+
+    Raises :class:`NotImplementedError` for any other type, as msgspec expects.
+    """
     if kind in _OWN:
         return {"$ref": _REFERENCE.format(name=_OWN[kind][0])}
     if issubclass(kind, Objective | PurePath):
@@ -152,7 +158,7 @@ def _describe_struct(schema: Json, bases: Sequence[type]) -> None:
 def _require_written(schema: Json) -> None:
     """Require, in place, the keys that are always written; fields that may be unset stay optional.
 
-    If no key is required, at least one key has to be there.
+    If no key is required, at least one key has to be there. Default values are removed from the schema.
     """
     fields = schema["properties"]
     written = {name for name in fields if fields[name].pop("default", _UNSET) is not _UNSET}

@@ -23,7 +23,10 @@ def plain(value: object) -> Any:
 
 
 def _encode(value: object) -> object:
-    """Return a fraction, costs, an objective or a path as a value that JSON can hold."""
+    """Return a fraction, costs, an objective or a path as a value that JSON can hold.
+
+    Raises :class:`TypeError` for any other value.
+    """
     if isinstance(value, Fraction):
         return {"exact": fraction_text(value), "approx": nearest_float(value)}
     if isinstance(value, Costs):
@@ -81,7 +84,10 @@ def read_plain(kind: type[T], value: Json) -> T:
 
 
 def _decode(kind: type, value: Any) -> Objective | Fraction | int:
-    """Return an objective, fraction or integer from its plain form."""
+    """Return an objective, if ``kind`` is its class, or else a fraction from its plain form.
+
+    Objectives and integers are returned as they are.
+    """
     if isinstance(value, Objective) or type(value) is int:
         return value
     if kind is Objective:

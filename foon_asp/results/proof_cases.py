@@ -81,6 +81,8 @@ class ProofCases(Value, frozen=True):
     def of(cls, problem: Problem, content: Json) -> Self:
         """Return the cases of the proof in a certificate about a problem.
 
+        Cases that take the choice of a branch come before those that exclude it.
+
         Parameters:
             problem: The problem.
             content: The certificate as plain values.
@@ -148,7 +150,8 @@ def _proof_case(
 def _landmark_actions(problem: Problem, cut: Iterable[int]) -> set[int]:
     """Return the landmark actions of a cut of node ids.
 
-    These are the units, by id, that make a node of the cut and need no node of it.
+    These are the units, by id, that make a node of the cut and need no node of it. Making a kitchen item does
+    not count.
     """
     inside = frozenset(cut)
     makers = (unit for o in inside - problem.kitchen for unit in problem.makers[o])
@@ -168,7 +171,8 @@ def _claimed_cost(content: Json) -> float | None:
 def _cost_of_taken(problem: Problem, content: Json, decisions: Iterable[Choice]) -> float:
     """Return the summed cost, by the first objective, of the units and items that are taken by decisions.
 
-    An item costs 1. The cost is 0 if the certificate has no objective.
+    An item costs 1. By the objective ``kitchen``, units cost nothing. The cost is 0 if the certificate has no
+    objective.
     """
     if not content["objective"]:
         return 0.0

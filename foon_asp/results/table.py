@@ -91,7 +91,10 @@ def _aligned_lines(table: Table, width: int | None, coloured: bool) -> Iterator[
 
 
 def _stacked_lines(table: Table, width: int) -> Iterator[str]:
-    """Yield, for narrow terminals, a block of lines for each row of a table, with an empty line between."""
+    """Yield, for narrow terminals, a block of lines for each row of a table, with an empty line between.
+
+    A block has a line for each cell, after its heading. Empty rows and cells are left out.
+    """
     for index, row in enumerate(filter(None, table.rows)):
         if index:
             yield ""
@@ -118,13 +121,13 @@ def _colour(text: str, cell: str | Cell, coloured: bool, heading: bool) -> str:
 def _fold(line: str, width: int | None) -> list[str]:
     """Return a line folded between words to a width of at least 20; further lines are indented.
 
-    ``None`` for the width leaves the line whole.
+    ``None`` for the width leaves the line whole. A word that is longer than the width stays whole.
     """
     if width is None or len(line) <= width:
         return [line]
-    begins = _BEGINS.match(line)
-    assert begins
-    inner = " " * min(begins.end() + 2, width // 2)
+    indent = _BEGINS.match(line)
+    assert indent
+    further_indent = " " * min(indent.end() + 2, width // 2)
     return textwrap.wrap(
-        line, max(20, width), subsequent_indent=inner, break_on_hyphens=False, break_long_words=False
+        line, max(20, width), subsequent_indent=further_indent, break_on_hyphens=False, break_long_words=False
     )

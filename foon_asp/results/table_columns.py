@@ -22,10 +22,10 @@ def flat_row(row: Json) -> Json:
     values are left out.
     """
     return {
-        name: value
+        flat_name: value
         for name, inner in row.items()
         if name != "schema"
-        for name, value in _flat_items(name, inner)
+        for flat_name, value in _flat_items(name, inner)
     }
 
 
@@ -73,8 +73,9 @@ def table_cells(
 ) -> tuple[Sequence[str], list[list[Any]]]:
     """Return the names of the columns of flat rows, and a list of cells for each row.
 
-    ``columns`` are the names to use; by default, all keys in the rows. A cell is ``None`` if the row has no
-    value. In a column of exact numbers, the cell of a whole number is the number as text.
+    ``columns`` are the names to use. By default, they are all keys in the rows, except a key such as
+    ``costs`` if a row has ``costs.units``. A cell is ``None`` if the row has no value. In a column of exact
+    numbers, the cell of a whole number is the number as text.
     """
     rows = list(rows)
     if columns is None:
@@ -109,7 +110,8 @@ def csv_text(rows: Iterable[Json], names: Sequence[str] | None = None) -> str:
 def safe_cell(text: str) -> str:
     """Return the text of a cell with control characters escaped.
 
-    If spreadsheets would take it for a formula, it stands behind an apostrophe.
+    If spreadsheets would take it for a formula, it stands behind an apostrophe. A number such as ``-1`` does
+    not.
     """
     text = escaped(text)  # of what begins a formula, tabs and line ends
     return f"'{text}" if text[:1] in {"=", "+", "-", "@"} and not _WRITTEN_NUMBER.fullmatch(text) else text
@@ -139,7 +141,7 @@ def markdown_row(cells: Iterable[str]) -> str:
 
 
 def _rounded_cell_text(value: Any) -> str:
-    """Return a cell as text, with floats in six digits."""
+    """Return a cell as text, with floats in six digits; a float that is whole has no decimal point."""
     if isinstance(value, float):
         return str(int(value)) if value.is_integer() else f"{value:.6g}"
     return _cell_text(value)

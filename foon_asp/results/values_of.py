@@ -97,7 +97,10 @@ def node_of(network: Network, o: int) -> Node:
 
 
 def node_as(kind: type[N], network: Network, o: int, **fields: Any) -> N:
-    """Return an object node, by id, as a value of class ``kind``, with additional fields of the class."""
+    """Return an object node, by id, as a value of class ``kind``, with additional fields of the class.
+
+    The value has the id of the node in the whole network.
+    """
     return kind(network.object_number(o), *_node_fields(network.objects[o]), **fields)
 
 
@@ -123,7 +126,10 @@ def unit_of(network: Network, unit: int) -> Unit:
 
 
 def unit_as(kind: type[U], network: Network, unit: int, **fields: Any) -> U:
-    """Return a unit, by id, as a value of class ``kind``, with additional fields of the class."""
+    """Return a unit, by id, as a value of class ``kind``, with additional fields of the class.
+
+    The value has the id in the whole network and, below level 3, the level-3 units that the unit stands for.
+    """
     return kind(
         network.unit_number(unit),
         network.motions[unit],
@@ -236,7 +242,7 @@ def used_up_of(problem: Problem, tree: Iterable[FunctionalUnit] | None) -> UsedU
 
 
 def lack_of(network: Network, shortage: Shortage) -> Lack:
-    """Return a missing copy as a value; steps are numbered from 1."""
+    """Return a missing copy as a value; steps are numbered from 1, and an amount of 1 is left out."""
     position = None if shortage.step is None else shortage.step + 1
     consumers = tuple(step + 1 for step in shortage.consumers)
     amount = UNSET if shortage.amount == 1 else shortage.amount

@@ -96,8 +96,8 @@ class Converter:
     def _converted_lines(self, text: str, file: str, writer: TextWriter, lost: "_Tally") -> str:
         """Return FOON text in another dialect of FOON text; losses are added to ``lost``.
 
-        Comments and blank lines stay. Raises :class:`InputError` for lines that cannot be understood, unless
-        ``lenient``.
+        Comments and blank lines stay. If ``lenient``, lines that cannot be understood stay unchanged;
+        otherwise :class:`InputError` is raised for them.
         """
         losses_by_line: dict[str, list[Loss]] = {}
 
@@ -190,7 +190,8 @@ class Converter:
     ) -> tuple[str, ...]:
         """Return the source videos that all units share and that the target can name.
 
-        Other videos and the comments of the file are added to ``lost``.
+        If the videos of two units differ, the result is empty. Lost comments and videos are added to
+        ``lost``.
         """
         video_lists = {unit.sources[0].videos for unit in units}
         shared_videos = video_lists.pop() if len(video_lists) == 1 else ()

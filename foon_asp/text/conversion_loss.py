@@ -71,7 +71,10 @@ def lost_in_states(states: tuple[StateLine, ...], converted: tuple[StateLine, ..
 
 
 def _lost_fields(fields: tuple[str, ...], converted: tuple[str, ...]) -> Iterator[Loss]:
-    """Yield a loss for each field of an object line that the converted line has not."""
+    """Yield a loss for each field of an object line that the converted line has not.
+
+    A first field ``0`` or ``1`` is a motion flag, and a later number is a recipe category.
+    """
     missing = Counter(fields) - Counter(converted)
     for index, field in enumerate(fields):
         if not missing[field]:
@@ -86,7 +89,10 @@ def _lost_fields(fields: tuple[str, ...], converted: tuple[str, ...]) -> Iterato
 
 
 def _lost_times(fields: MotionFields, converted: MotionFields) -> Iterator[Loss]:
-    """Yield ``TIMES`` if the times of two motion lines differ, and ``RATES`` if entity or success rate do."""
+    """Yield ``TIMES`` if the times of two motion lines differ, and ``RATES`` if entity or success rate do.
+
+    Times in one field, ``<0:14,0:20>``, do not differ from the same times in two fields.
+    """
     if in_two_fields(fields.times) != in_two_fields(converted.times):
         yield Loss.TIMES
     if fields[1:] != converted[1:]:
@@ -94,7 +100,10 @@ def _lost_times(fields: MotionFields, converted: MotionFields) -> Iterator[Loss]
 
 
 def _lost_attributes(states: tuple[StateLine, ...], converted: tuple[StateLine, ...]) -> list[Loss]:
-    """Return the losses of state lines, without those of ids; raises as :func:`lost_in_states` does."""
+    """Return the losses of state lines, without those of ids; raises as :func:`lost_in_states` does.
+
+    A repeated state may be left out without a loss. ``ORDER`` is lost if the kept lines are in another order.
+    """
     old_attributes, new_attributes = [s.attribute for s in states], [s.attribute for s in converted]
     missing, extra = (
         Counter(old_attributes) - Counter(new_attributes),

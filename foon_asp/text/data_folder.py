@@ -193,10 +193,11 @@ def _may_be_network(file: Path) -> bool:
 def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:
     """Read the network and the data beside it, except ``stand_ins``.
 
-    If ``lenient``, the lines of a network that are not understood are left out with a warning. Below
-    ``level`` 3, network, kitchen and goals are reduced to that level. An entry then matches all nodes that
-    agree with it in the remaining parts. Kitchen items, prices and amounts that match nothing in the network
-    cause warnings. Raises :class:`InputError` for other input that is not understood.
+    Without a kitchen file, the kitchen is the starting kitchen. Without a goals file, goals are assumed. If
+    ``lenient``, the lines of a network that are not understood are left out with a warning. Below ``level``
+    3, network, kitchen and goals are reduced to that level. An entry then matches all nodes that agree with
+    it in the remaining parts. Kitchen items, prices and amounts that match nothing in the network cause
+    warnings. Raises :class:`InputError` for other input that is not understood.
     """
     with without_garbage_collection():
         reader = FoonReader(lenient)
@@ -259,7 +260,7 @@ def kitchen_nodes(network: Network, items: Iterable[ListedObject]) -> frozenset[
 def amounts_of_items(names: NodeNames, items: Iterable[ListedObject]) -> dict[ObjectNode, int]:
     """Return the amount of each node that matches an item with an amount; items without one are skipped.
 
-    Items are taken at the level of ``names``.
+    Items are taken at the level of ``names``. If several items match a node, the last one counts.
     """
     return {
         names.node(o): item.amount

@@ -68,7 +68,10 @@ class FoonJson(Format):
         return read_json_objects(text, file, reading)
 
     def lines(self, text: str) -> Iterator[Line]:
-        """Yield objects and motions as lines of FOON text; parts that cannot be understood are left out."""
+        """Yield objects and motions as lines of FOON text; parts that cannot be understood are left out.
+
+        The motion of a unit comes before its objects.
+        """
         reading = Reading(lenient=True)
         if self.lists_objects(text):
             for block, _ in self.objects(text, "", reading):
@@ -82,7 +85,8 @@ class FoonJson(Format):
     def canonical_text(self, text: str, file: str, lenient: bool = False) -> str:
         """Return JSON laid out anew; a line end after the last bracket is neither added nor removed.
 
-        For a text that is not JSON, raises :class:`InputError`; with ``lenient``, returns it unchanged.
+        All lines get the most frequent line end. For a text that is not JSON, raises :class:`InputError`;
+        with ``lenient``, returns it unchanged.
         """
         try:
             check_json(text, file)

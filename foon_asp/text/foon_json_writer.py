@@ -189,7 +189,8 @@ def motion_with_ids(line: MotionLine) -> str:
 def object_without_ids(line: ObjectLine, states: tuple[StateLine, ...]) -> str:
     """Return the JSON of an object in the form ``json-list``: label, states, ingredients and one container.
 
-    The container is the object of the first relation ``in``, or else of the first relation.
+    The container is the object of the first relation ``in``, or else of the first relation. All ingredients
+    are in one list, without the words of contents.
     """
     attributes = [state.attribute for state in states]
     relations = sorted(

@@ -64,9 +64,10 @@ class Format(Protocol):
         yield from self.units(read_plain_text(file), str(file), reading)
 
     def units(self, text: str, file: str, reading: Reading) -> Iterator[ReadUnit]:
-        """Yield the units of a text in order, without their lines but with their amounts.
+        """Yield the units of a text in order, without their lines.
 
-        The diagnostics of the text are added to ``reading``.
+        They have amounts only if the format is ``machine_written`` or has a method of its own. The
+        diagnostics of the text are added to ``reading``.
         """
         for unit in self.listed_units(text, file, reading):
             amounts = unit.amounts if self.machine_written else UnitAmounts()

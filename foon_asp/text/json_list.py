@@ -108,18 +108,22 @@ class JsonList:
     def _list_elements(self, position: int) -> Generator[tuple[int, object], None, int]:
         """Yield the elements of the list that begins at a position; return the position after the list."""
         position = self._expect("[", position, "a list, [ ... ]")
-        first = True
+        is_first = True
         while self._text[position : position + 1] != "]":
-            if not first:
+            if not is_first:
                 position = self._expect(",", position, "a comma or ]")
-            first = False
+            is_first = False
             value, end = self._value_at(position)
             yield position, value
             position = self._skip_blanks(end)
         return position + 1
 
     def _value_at(self, position: int) -> tuple[object, int]:
-        """Return the JSON value at a position, and the position after it."""
+        """Return the JSON value at a position, and the position after it; numbers are :class:`JsonNumber`.
+
+        Raises :class:`JsonFaultError` with this position for a repeated key, and
+        :class:`json.JSONDecodeError` for any other fault.
+        """
         try:
             return DECODER.raw_decode(self._text, position)
         except JsonFaultError as fault:
@@ -182,7 +186,10 @@ def _repeated_key(key: str, position: int) -> JsonFaultError:
 
 
 def _object_without_repeats(pairs: list[tuple[str, object]]) -> dict[str, object]:
-    """Return an object of JSON from its pairs; raises :class:`JsonFaultError` for a repeated key."""
+    """Return an object of JSON from its pairs.
+
+    Raises :class:`JsonFaultError` for a repeated key, with position 0, since the position is not known here.
+    """
     value = dict(pairs)
     if len(value) < len(pairs):
         keys = [key for key, _ in pairs]

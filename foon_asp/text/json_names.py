@@ -103,7 +103,8 @@ class _Level:
 def _json_names(text: str) -> list[_JsonName]:
     """Return the names of a JSON text, with their kinds, positions and ids.
 
-    Names directly in an object come after names that are nested deeper in it.
+    Names directly in an object come after names that are nested deeper in it. Blanks around a name and the
+    ``*`` of a composite motion are no part of it. The text has to be JSON.
     """
     levels = [_Level("", True)]
     names: list[_JsonName] = []
@@ -155,7 +156,7 @@ def _is_contains_word(name: _JsonName) -> bool:
 
 
 def _mark_word_of_contents(names: list[_JsonName], first: int) -> None:
-    """Make the state ``contains`` of an object a word of contents, since the object lists ingredients.
+    """Make the first state ``contains`` of an object a word of contents, since the object lists ingredients.
 
     ``first`` is the index of the object's first name in ``names``. The list is changed in place.
     """

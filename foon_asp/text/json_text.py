@@ -22,16 +22,16 @@ def schema_name(kind: str) -> str:
 
 
 def json_text(value: object) -> str:
-    """Return plain values as JSON with indents and a line end; a list or object that fits stands on one line.
+    """Return plain values as JSON with indents and a line end.
 
-    So that line breaks do not depend on folders, only the last part of an absolute path counts for the
-    width.
+    A list or an object that fits into about 95 letters stands on one line. So that line breaks do not depend
+    on folders, only the last part of an absolute path counts for the width.
     """
     return _laid_out(value, "\n") + "\n"
 
 
 def _laid_out(value: object, newline: str) -> str:
-    """Return a value as JSON, on one line where it fits, else with an element on each line.
+    """Return a value as JSON, on one line if about 95 letters hold it, else with an element on each line.
 
     ``newline`` is a line feed and the indent of the value.
     """

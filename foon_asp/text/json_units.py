@@ -37,7 +37,8 @@ def read_json_units(text: str, file: str, reading: Reading) -> Iterator[ListedUn
 
     A ``container`` becomes the relation ``in``, unless another relation of the object names it. Units without
     input objects are left out, with a warning. Units without output objects only cause a warning. A list of
-    objects alone has no units, and causes a warning.
+    objects alone has no units, and causes a warning. Faulty units are left out; their faults are recorded
+    after the last unit.
     """
     elements = JsonList(text, Path(file), "functional_units")
     all_elements = list(elements)
@@ -121,8 +122,9 @@ def _motion_line(value: object, remarks: list[str]) -> MotionLine:
     """Return the motion line of a unit, with the times, entity and success rate that its JSON has.
 
     ``value`` is the JSON object of the motion, or its label alone. A success rate without an entity is that
-    of ``Robot``; an entity without a success rate is left out. Messages on what was left out or assumed are
-    added to ``remarks``. Raises :class:`ValueError` for a motion without a label, and for other faults.
+    of ``Robot``; an entity without a success rate is left out. An end time without a start time gets the
+    start ``Assumed``. Messages on what was left out or assumed are added to ``remarks``. Raises
+    :class:`ValueError` for a motion without a label, and for other faults.
     """
     if not isinstance(value, dict):
         value = {"motion_label": value}

@@ -64,7 +64,10 @@ class ObjectLine(NamedTuple):
 
     @property
     def category(self) -> str | None:
-        """The recipe category of a goal, a number other than ``00`` and ``01``; ``None`` without one."""
+        """The recipe category of a goal, ``None`` without one.
+
+        It is the first field behind the motion flag that is a number other than ``00`` and ``01``.
+        """
         fields = self.fields if self.motion_flag is None else self.fields[1:]
         return next((field for field in fields if is_number(field) and field not in SLIPPED_FLAGS), None)
 

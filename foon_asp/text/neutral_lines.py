@@ -38,7 +38,10 @@ class NeutralLines(FoonJson):
     suffix = NEUTRAL_SUFFIXES[0]
 
     def recognises(self, text: str, file: str) -> bool:
-        """Whether the file has a suffix of neutral files, or the first line of the text is a neutral unit."""
+        """Whether the file has a suffix of neutral files, or the first line of the text is a neutral unit.
+
+        A line with a key ``schema`` is a document of foon-asp, and no unit.
+        """
         if file.endswith(NEUTRAL_SUFFIXES):
             return True
         start = len(text[:1_000]) - len(text[:1_000].lstrip("\ufeff \t\r\n"))
@@ -85,8 +88,8 @@ class NeutralLines(FoonJson):
     def canonical_text(self, text: str, file: str, lenient: bool = False) -> str:
         """Return the text with each unit laid out anew, with a blank behind each comma and colon.
 
-        All lines get the most frequent line end. Raises :class:`InputError` for lines that cannot be
-        understood; if ``lenient``, they stay unchanged.
+        All lines get the most frequent line end, also the last one. A byte order mark is removed. Raises
+        :class:`InputError` for lines that cannot be understood; if ``lenient``, they stay unchanged.
         """
         lines = split_lines(text.removeprefix("\ufeff"))
         reading = Reading(lenient)

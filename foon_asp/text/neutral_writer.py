@@ -35,7 +35,8 @@ def _unit_line(
 def _side_text(names: Sequence[tuple[str, int]]) -> str:
     """Return a side of a unit in JSON: a list of names, or amounts by name if some amount is not 1.
 
-    The ``names`` are JSON already, each with its amount. The amounts of a name that comes twice are added up.
+    The ``names`` are JSON already, each with its amount. In the object, the amounts of a name that comes
+    twice are added up.
     """
     if all(amount == 1 for _, amount in names):
         return f"[{', '.join(name for name, _ in names)}]"

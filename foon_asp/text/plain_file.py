@@ -21,7 +21,10 @@ STORE_MAGIC = b"SQLite format 3\0"  # how every database begins
 
 
 def is_store(file: Path) -> bool:
-    """Whether a path is that of a store: it has the suffix ``.foon``, or begins like an SQLite database."""
+    """Whether a path is that of a store: it has the suffix ``.foon``, or begins like an SQLite database.
+
+    With the suffix, the file need not exist; a folder is no store.
+    """
     if file.suffix == STORE_SUFFIX and not file.is_dir():
         return True
     return read_beginning(file, len(STORE_MAGIC)) == STORE_MAGIC

@@ -11,7 +11,7 @@ _COPY = "# From:"
 
 
 def read_video(comment: str) -> str | None:
-    """Return the video that a comment line ``# Source:`` names.
+    """Return the video that a comment line ``# Source:`` names, with a blank for each tab in it.
 
     Return ``None`` for another comment, and for a comment that names no video.
     """

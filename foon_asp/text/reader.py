@@ -138,6 +138,8 @@ class FoonReader(Reading):
     def units(self, text: str, file: str) -> Iterator[ReadUnit]:
         """Yield the units of a text in order; findings are added to ``diagnostics``.
 
+        Their amounts are not recorded in ``amounts``.
+
         Parameters:
             text: The FOON text.
             file: The name of the file, for messages and sources.

@@ -41,7 +41,10 @@ class Reading:
         self.amounts = StatedAmounts()
 
     def reject(self, code: str, message: str, source: Source, excerpt: str = "") -> None:
-        """Record a fault as an error; if ``lenient``, as a warning whose message ends in ``; left out``."""
+        """Record a fault as an error; if ``lenient``, as a warning whose message ends in ``; left out``.
+
+        ``left_out`` is not changed: the caller counts lines.
+        """
         severity = Severity.WARNING if self.lenient else Severity.ERROR
         message += "; left out" if self.lenient else ""
         self.diagnostics.append(Diagnostic(severity, code, message, source, excerpt))

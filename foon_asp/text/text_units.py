@@ -89,7 +89,10 @@ class TextUnits:
         self._sections = 0  # between separators, with anything in them, so far
 
     def units(self) -> Iterator[ReadUnit]:
-        """Yield the units in order, without their lines."""
+        """Yield the units in order, without their lines but with their amounts.
+
+        A node that a unit lists twice has the greatest of its amounts.
+        """
         for chunk, last in self._chunks():
             unit = None if last else self._clean_unit(chunk)
             if unit:
@@ -114,8 +117,8 @@ class TextUnits:
     def _chunks(self) -> Iterator[tuple[str, bool]]:
         """Yield the chunks between lines ``//``, each with whether it is the last; progress is reported.
 
-        A line ``//`` with blanks behind it ends no chunk. If the text is JSON behind other text, this fault
-        is recorded, and there are no chunks.
+        ``_number`` is set to the first line of each chunk. A line ``//`` with blanks behind it ends no chunk.
+        If the text is JSON behind other text, this fault is recorded, and there are no chunks.
         """
         report, unreported = progress_report(), 0
         pieces = [next(self._pieces, "")]
@@ -148,7 +151,10 @@ class TextUnits:
         self.reading.reject("json", message, Source(self.file, line, 1), split_lines(content)[0])
 
     def _clean_unit(self, chunk: str) -> ReadUnit | None:
-        """Return the unit of a well-formed chunk, read by its object blocks; ``None`` for another chunk."""
+        """Return the unit of a well-formed chunk, read by its object blocks; ``None`` for another chunk.
+
+        A well-formed chunk has no amounts, no goals, and no comments but lines ``# From:`` at its beginning.
+        """
         first_line, copies = self._number, []
         while chunk[:1] == "#":
             comment, line_end, chunk = chunk.partition("\n")
@@ -245,7 +251,7 @@ class TextUnits:
     def _add_amount(self, section: "_Section", index: int) -> None:
         """Set the amount of the current object to that in a comment line, or record the line as a fault.
 
-        An amount of an object that could not be read is dropped.
+        An amount of an object that could not be read is dropped; if ``lenient``, it counts as left out.
         """
         if section.object_unreadable:
             self.reading.left_out += self.reading.lenient
@@ -326,7 +332,10 @@ class TextUnits:
         return Source(self.file, self._number + index, column)
 
     def _report_remarks(self, line: Line, index: int) -> None:
-        """Record the remarks on a line as warnings, with the line in canonical form as their fix."""
+        """Record the remarks on a line as warnings, with the line in canonical form as their fix.
+
+        If the line is in canonical form already, the warnings have no fix.
+        """
         if line.remarks:
             mended = write_line(line)
             fix = mended if mended != self._lines[index] else None

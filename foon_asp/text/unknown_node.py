@@ -39,7 +39,10 @@ class GoalError(UserError):
 
 
 def most_similar_first(node: ObjectNode, nodes: Sequence[int], names: NodeNames) -> Sequence[int]:
-    """Return ids of nodes sorted by similarity of notation to ``node``; unsorted if this is a label alone."""
+    """Return ids of nodes sorted by similarity of their notation to that of ``node``.
+
+    If ``node`` is a label alone, the order of ``nodes`` stays.
+    """
     if node == ObjectNode(node.label):
         return nodes
     import difflib  # noqa: PLC0415 (only for error messages)
@@ -54,7 +57,8 @@ def most_similar_first(node: ObjectNode, nodes: Sequence[int], names: NodeNames)
 def unknown_error(message: str, node: ObjectNode, names: NodeNames, wording: Wording) -> GoalError:
     """Return the error about an unknown node, with some nodes of each similar label as candidates.
 
-    Labels are similar if they begin with the label of the node, or are spelled nearly like it.
+    Labels are similar if they begin with the label of the node, or are spelled nearly like it. Each label has
+    an equal share of the twelve candidates. Without a similar label, the error has only the message.
     """
     labels = dict.fromkeys((*names.beginning(node.label, _MAX_CANDIDATES), *names.near(node.label, 3)))
     counted_nodes = [names.labelled(label) for label in labels]

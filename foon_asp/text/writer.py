@@ -75,7 +75,10 @@ def write_motion(motion: str) -> str:
 
 @lru_cache(10_000, typed=True)  # many units have equal lines
 def _line_if_readable(line: Line) -> str | None:
-    """Return the text of a line with its line end; ``None`` if it is not read back as the same line."""
+    """Return the text of a line with its line end; ``None`` if it is not read back as the same line.
+
+    Return ``None``, too, if UTF-8 cannot hold the text.
+    """
     written = write_line(line)
     try:
         read_back = None if "\n" in written or "\r" in written else parse_line(written)._replace(remarks=())
