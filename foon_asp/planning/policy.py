@@ -76,7 +76,7 @@ def best_policy(problem: Problem, trees: Sequence[tuple[int, ...]], retries: int
 
     Parameters:
         problem: The problem, whose items last, with rates.
-        trees: Trees for its goals, by unit ids in an order that executes.
+        trees: Trees for its goals, at least one, by unit ids in an order that executes.
         retries: How many failed executions a run survives; the next failure ends it.
     """
     units = tuple(dict.fromkeys(unit for tree in trees for unit in tree))
@@ -98,7 +98,8 @@ def best_policy(problem: Problem, trees: Sequence[tuple[int, ...]], retries: int
 def _candidates(trees: Sequence[tuple[int, ...]], failures: int) -> Iterator[tuple[PolicyBranch, ...]]:
     """Yield the policies whose branches have this number of failures in total.
 
-    Each follows some of the trees, in some order. Policies with few branches come first.
+    Each follows some of the trees, in some order and each at most once. Every branch has at least one
+    failure. Policies with few branches come first.
     """
     for number in range(1, min(len(trees), failures) + 1):
         for order in itertools.permutations(trees, number):
@@ -145,7 +146,8 @@ class _ExecutionModel:
 def _chance(problem: Problem, branches: tuple[PolicyBranch, ...]) -> Fraction:
     """Return the exact chance that the branches, followed one after the other, make the goals.
 
-    A unit whose outputs are all available already is skipped.
+    A unit whose outputs are all available already is skipped. A branch begins with the nodes that are
+    available when the branch before it ends.
     """
     model = _ExecutionModel(problem)
     # by branch, position in it, and minus the failures left: a success and a failure lead to later keys
@@ -194,7 +196,7 @@ class _Optimum:
     def _value(self, state: State) -> tuple[Fraction, ...]:
         """Return the greatest chances from a state, by the number of failures left, from 0 to ``retries``.
 
-        Raises :class:`_TooManyStates` beyond the limit.
+        They are kept for further calls. Raises :class:`_TooManyStates` beyond the limit.
         """
         if self._model.goals <= state:
             return (Fraction(1),) * (self._retries + 1)

@@ -31,7 +31,7 @@ class ScheduleTask(NamedTuple):
     ``passive``: for each step, whether it occupies no agent.
     ``after``: for each step, the steps that it waits for.
     ``uses``: all uses of tools.
-    ``counts``: the number of copies of each tool.
+    ``counts``: the number of copies of each tool that has a use.
     ``agents``: the number of agents.
     ``sharing``: sets of steps that need the same copy of an item, so that they must not overlap.
     """
@@ -72,9 +72,9 @@ def schedule_task(
 ) -> ScheduleTask:
     """Return the scheduling task of an executable plan.
 
-    ``replay`` says which copy of an item each step takes. ``resources`` are the durations of motions, the
-    agents and the tools. Raises :class:`UserError` if the durations have too many digits to be added up in
-    ticks.
+    A tick is the longest fraction 1/n of a second of which all durations are multiples. ``replay`` says which
+    copy of an item each step takes. ``resources`` are the durations of motions, the agents and the tools.
+    Raises :class:`UserError` if the durations have too many digits to be added up in ticks.
     """
     seconds = [Fraction(resources.durations[unit.motion].seconds) for unit in plan]
     ticks_per_second = lcm(*(duration.denominator for duration in seconds))
@@ -97,8 +97,9 @@ def schedule_task(
 def _uses(problem: Problem, replay: Replay, resources: ScheduleResources) -> tuple[Use, ...]:
     """Return the uses of tools in a plan.
 
-    A step belongs to an earlier use of a tool if it takes a copy that was made during that use; else it
-    begins a new use.
+    A step belongs to an earlier use of a tool if it takes a copy that was made during that use: of the tool
+    itself, or of something in it. Otherwise it begins a new use. If a step needs several copies of a tool,
+    it belongs to as many uses.
     """
     names: list[ToolName] = []
     steps: list[list[int]] = []
@@ -107,7 +108,9 @@ def _uses(problem: Problem, replay: Replay, resources: ScheduleResources) -> tup
     def assign(number: int, label: str, node: ObjectNode | None, copy: Copy | None) -> int:
         """Assign a step to the use that ``copy`` belongs to, or to a new use; return the position of the use.
 
-        ``label`` is the tool's label, and ``node`` its node before the step, if that is known.
+        If the step belongs to the use of ``copy`` already, it begins a new use. ``label`` is the tool's
+        label, and ``node`` its node before the step, if that is known. The name of a new use is the label,
+        unless ``node`` is in the kitchen; then it is the name under which ``node`` is counted.
         """
         use = None if copy is None else use_of.get((copy, label))
         if use is None or number in steps[use]:

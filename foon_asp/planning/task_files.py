@@ -68,7 +68,8 @@ def _domain_and_problem(outlines: list[PddlOutline]) -> tuple[PddlOutline, PddlO
 def _domain_in_folder_of(problem: Path) -> PddlOutline:
     """Return the domain in the folder of a problem, under a file name usual in planning competitions.
 
-    Raises :class:`UserError` if no file of such a name is a domain.
+    The first such file that is a domain is returned. Raises :class:`UserError` if no file of such a name is a
+    domain.
     """
     number = "".join(filter(str.isdigit, problem.stem))
     names = [
