@@ -194,9 +194,9 @@ def _is_slip(
 ) -> bool:
     """Whether a rare name is probably a slip of a frequent one, from which it differs in one word.
 
-    The parameters are those of :func:`near_names`. If both of the differing words are known, it is no slip.
-    If only the word of ``frequent`` is known, or only ``rare`` is one-sided, it is a slip however often
-    ``rare`` is mentioned. Otherwise, ``rare`` has at most five mentions and is much rarer.
+    The parameters are those of :func:`near_names`. If the word in which ``rare`` differs is known, ``rare``
+    is no slip. If only the word of ``frequent`` is known, or only ``rare`` is one-sided, ``rare`` is a slip
+    however often it is mentioned. Otherwise, a slip has at most five mentions and is much rarer.
     """
     words, others = rare.split(" "), frequent.split(" ")
     differing = [(a, b) for a, b in zip(words, others, strict=False) if a != b]

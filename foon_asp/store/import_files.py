@@ -51,10 +51,9 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
 
     With ``lenient``, lines that are not understood are left out. Without a goals file, the store gets assumed
     goals. Entries of the kitchen that match no node, and prices and amounts that fit no unit, are warnings.
-    Raises :class:`InputError` for input that is
-    not understood. Raises :class:`UserError` if one of the networks is a store, or if the store cannot be
-    written. It cannot be written if its name does not end in ``.foon``, if another process is writing it, or
-    if it would replace a file that is no store.
+    Raises :class:`InputError` for input that is not understood. Raises :class:`UserError` if one of the
+    networks is a store, or if the store cannot be written. It cannot be written if its name does not end in
+    ``.foon``, if another process is writing it, or if it would replace a file that is no store.
     """
     if store.suffix != STORE_SUFFIX:
         raise UserError(f"{store}: the name of a store ends in {STORE_SUFFIX}")
