@@ -62,7 +62,10 @@ class EditedText:
         return {"range": self.range(line, start, end), "newText": text}
 
     def edits_to(self, lines: list[str]) -> list[Json]:
-        """Return the edits that turn the text into a text with these lines; unchanged lines get no edit."""
+        """Return the edits that turn the text into a text with these lines; unchanged lines get no edit.
+
+        A single edit covers the last line of the shorter text and all lines after it.
+        """
         last = min(len(self.lines), len(lines)) - 1  # the edit of this line covers all lines after it
         edits = [
             self.edit(lines[number], number) for number in range(last) if lines[number] != self.lines[number]

@@ -40,7 +40,7 @@ def unheld_nodes(side: Side, habits: Habits) -> FaultyNodes:
             continue
         holder_places = {related_object for _, related_object in holder.relations}
         inside = [node for node in side.nodes if ("in", holder.label) in node.relations]
-        extra = [
+        unlisted = [
             node
             for node in inside
             if node.label in habits.foods
@@ -51,8 +51,8 @@ def unheld_nodes(side: Side, habits: Habits) -> FaultyNodes:
             and not content_names(node)
             and words_in([node.label]).isdisjoint(words_in(contents))
         ]
-        if len(extra) == 1:
-            (node,) = extra
+        if len(unlisted) == 1:
+            (node,) = unlisted
             listed = ", ".join(sorted(contents))
             yield node, f"{node.label!r} is in {holder.label!r} here, which contains {listed}, and not it"
 

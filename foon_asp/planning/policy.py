@@ -167,12 +167,12 @@ def _chance(problem: Problem, branches: tuple[PolicyBranch, ...]) -> Fraction:
                 continue
             unit = units[index]
             rate = model.rate(unit)
-            after = [((branch, index + 1, failures), state | model.makes(unit), rate)]
+            successors = [((branch, index + 1, failures), state | model.makes(unit), rate)]
             if failures < -1:
-                after.append(((branch, index, failures + 1), state, 1 - rate))
+                successors.append(((branch, index, failures + 1), state, 1 - rate))
             elif branch + 1 < len(branches):
-                after.append(((branch + 1, 0, -branches[branch + 1].failures), state, 1 - rate))
-            for following, new_state, share in after:
+                successors.append(((branch + 1, 0, -branches[branch + 1].failures), state, 1 - rate))
+            for following, new_state, share in successors:
                 if share:
                     if following not in waiting:
                         waiting[following] = {}
@@ -204,14 +204,14 @@ class _Optimum:
             if len(self._values) == POLICY_LIMITS.states:
                 raise _TooManyStates
             self._values[state] = ()  # counts while it is being computed
-            after = [
+            successes = [
                 (self._model.rate(unit), self._value(state | self._model.makes(unit)))
                 for unit in self._choices(state)
             ]
             values: list[Fraction] = []
             for failures in range(self._retries + 1):
                 failed = values[-1] if failures else Fraction(0)
-                outcomes = (rate * value[failures] + (1 - rate) * failed for rate, value in after)
+                outcomes = (rate * value[failures] + (1 - rate) * failed for rate, value in successes)
                 values.append(max(outcomes, default=Fraction(0)))
             self._values[state] = tuple(values)
         return self._values[state]

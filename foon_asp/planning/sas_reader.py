@@ -104,7 +104,7 @@ class _Reader:
         return SasTask(self._file, facts, self._variables, derived, start, goal, operators, axioms, costed)
 
     def _variable(self) -> list[str]:
-        """Read a variable, add it to the variables, and return the names of its facts."""
+        """Read a variable, record it and whether it is derived, and return the names of its facts."""
         self._expect("begin_variable")
         variable = self._next_line()
         if self._number() != -1:

@@ -125,22 +125,24 @@ def _uses(problem: Problem, replay: Replay, resources: ScheduleResources) -> tup
     for number, step in enumerate(replay.steps):
         copies = {copy.node: copy for copy in (*step.gone, *step.stayed)}
         for label, demand in tools_needed(problem, resources, step.unit).items():
-            after = {node: assign(number, label, node, copies.get(node)) for node in demand.kept}
-            changed = {
+            use_of_output = {node: assign(number, label, node, copies.get(node)) for node in demand.kept}
+            use_of_input = {
                 node: assign(number, label, node, None if node is None else copies.get(node))
                 for node in (*demand.changed, *demand.others)
             }
-            fallback = next(iter((changed or after).values()), None)
+            fallback = next(iter((use_of_input or use_of_output).values()), None)
             for output in demand.made:
-                if changed:
-                    after[output] = changed.pop(_most_similar(changed, output))
+                if use_of_input:
+                    use_of_output[output] = use_of_input.pop(_most_similar(use_of_input, output))
                 else:
-                    after[output] = assign(number, label, None, None)
-                use_of[Copy(output, number), label] = after[output]
+                    use_of_output[output] = assign(number, label, None, None)
+                use_of[Copy(output, number), label] = use_of_output[output]
             for copy in step.came:
                 if copy.node.label != label and copy.node.is_in(label):
-                    vessels = (use for node, use in after.items() if copy.node.label in node.ingredients)
-                    use = next(vessels, next(iter(after.values()), fallback))
+                    uses_with_copy = (
+                        use for node, use in use_of_output.items() if copy.node.label in node.ingredients
+                    )
+                    use = next(uses_with_copy, next(iter(use_of_output.values()), fallback))
                     if use is not None:
                         use_of[copy, label] = use
     return tuple(Use(name, tuple(positions)) for name, positions in zip(names, steps, strict=True))

@@ -133,7 +133,9 @@ def timed_steps(task: ScheduleTask, starts: Sequence[int]) -> list[TimedStep]:
         after[later].add(earlier)
     earliest: dict[int, int] = {}
     for step in sorted(range(len(starts)), key=lambda step: starts[step]):
-        earliest[step] = max((earliest[first] + task.lengths[first] for first in after[step]), default=0)
+        earliest[step] = max(
+            (earliest[earlier] + task.lengths[earlier] for earlier in after[step]), default=0
+        )
     return [
         TimedStep(
             earliest[step] * task.tick,

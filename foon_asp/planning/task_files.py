@@ -34,7 +34,10 @@ def read_task(files: Sequence[Path], deadline: Deadline) -> StripsTask:
 
 
 def read_pddl(domain: PddlOutline, problem: PddlOutline, deadline: Deadline) -> StripsTask:
-    """Return the delete relaxation of a planning task in PDDL; raises the errors of :func:`read_task`."""
+    """Return the delete relaxation of a planning task in PDDL; raises the errors of :func:`read_task`.
+
+    One more :class:`UserError` is that Fast Downward's translator is not installed.
+    """
     require_translator(f"{problem.file}: reading PDDL")
     with deadline.watched("reading the task"):
         require_task(domain, problem)

@@ -21,7 +21,7 @@ def write_trigrams(database: sqlite3.Connection) -> None:
 
 
 def labels_beginning(database: sqlite3.Connection, start: str, max_labels: int) -> list[str]:
-    """Return at most ``max_labels`` labels that begin with ``start``, in alphabetical order."""
+    """Return at most ``max_labels`` labels that begin with ``start``, in order; capitals come first."""
     statement = "SELECT name FROM label WHERE name >= ? ORDER BY name LIMIT ?"
     labels = _decode_labels(database.execute(statement, (encode_label(start), max_labels)))
     return [label for label in labels if label.startswith(start)]

@@ -303,7 +303,7 @@ class Store:
 
     @reporting_damage
     def beginning(self, start: str, max_labels: int) -> list[str]:
-        """Return at most ``max_labels`` labels that begin with ``start``, in alphabetical order."""
+        """Return at most ``max_labels`` labels that begin with ``start``, in order; capitals come first."""
         return self._checked_labels(labels_beginning(self._database, start, max_labels))
 
     @reporting_damage
@@ -393,7 +393,10 @@ class Store:
 
     @reporting_damage
     def unit_id(self, unit: FunctionalUnit) -> int | None:
-        """Return the id of a unit, or ``None`` if the network does not have it."""
+        """Return the id of a unit, or ``None`` if the network does not have it.
+
+        The order of inputs and of outputs does not count.
+        """
         inputs, outputs = ([self.object_id(node) for node in nodes] for nodes in (unit.inputs, unit.outputs))
         if None in inputs or None in outputs:
             return None
