@@ -245,7 +245,8 @@ def _escape_markdown(text: str) -> str:
 def _definitions(checked: CheckedText, parameters: object) -> list[Json]:
     """Return the locations where the achievers of the node of a line list it as an output.
 
-    Return no locations if the line belongs to no node.
+    If a unit is not found to list the node, its location is its first line. Return no locations if the line
+    belongs to no node.
     """
     text = checked.text
     node = _node_at(checked, text.requested_position(parameters)[0])
@@ -345,7 +346,8 @@ def _quick_fixes(checked: CheckedText, parameters: object) -> list[Json]:
     """Return the actions for the findings on a range of lines: those that fix, then those that silence.
 
     Only the first 100 findings in the range get actions. A finding with a rename has no other fix. A fix is
-    left out if the line is not as it was when it was linted. Nothing can be silenced in JSON.
+    left out if the line is not as it was when it was linted. Nothing can be silenced in JSON,
+    and no ``noqa`` finding can be.
     """
     text = checked.text
     first, last = (parameter(parameters, f"range.{end}.line", int) for end in ("start", "end"))

@@ -72,7 +72,7 @@ def best_policy(problem: Problem, trees: Sequence[tuple[int, ...]], retries: int
 
     Among policies of equal chance, one with the fewest branches is returned. If there are more policies than
     :attr:`PolicyLimits.policies`, only the first ones are compared, which have the fewest branches. If there
-    are more states or units than :class:`PolicyLimits` allows, ``bound`` is not exact.
+    are more states or units than :class:`PolicyLimits` allows, ``bound`` is only an upper bound.
 
     Parameters:
         problem: The problem, whose items last, with rates.

@@ -137,10 +137,11 @@ def _is_tool(problem: Problem, unit: FunctionalUnit, node: ObjectNode) -> bool:
 
 
 def _places(network: Network, nodes: Sequence[ObjectNode], others: Iterable[ObjectNode]) -> tuple[Node, ...]:
-    """Return the places that ``nodes``, one side of a unit, are in, on or at, in order of their labels.
+    """Return the places of ``nodes``, which are one side of a unit, in alphabetical order of their labels.
 
-    A place is the node with its label among ``nodes``, or else among ``others``, the other side of the unit.
-    If there is no such node, the place has only the label.
+    Every object to which a node has a relation is a place, whatever the relation. A place is the node with
+    its label among ``nodes``, or else among ``others``, the other side of the unit. If there is no such node,
+    the place has only the label.
     """
     by_label: dict[str, ObjectNode] = {}
     for node in (*nodes, *others):
