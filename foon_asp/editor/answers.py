@@ -346,8 +346,8 @@ def _quick_fixes(checked: CheckedText, parameters: object) -> list[Json]:
     """Return the actions for the findings on a range of lines: those that fix, then those that silence.
 
     Only the first 100 findings in the range get actions. A finding with a rename has no other fix. A fix is
-    left out if the line is not as it was when it was linted. Nothing can be silenced in JSON,
-    and no ``noqa`` finding can be.
+    left out if the line is not as it was when it was linted. ``noqa`` findings and findings in JSON cannot be
+    silenced.
     """
     text = checked.text
     first, last = (parameter(parameters, f"range.{end}.line", int) for end in ("start", "end"))

@@ -73,8 +73,8 @@ def schedule_task(
     """Return the scheduling task of an executable plan.
 
     A tick is the longest fraction 1/n of a second of which all durations are multiples. ``replay`` says which
-    copy of an item each step takes. ``resources`` are the durations of motions, the agents and the tools.
-    Raises :class:`UserError` if the durations have too many digits to be added up in ticks.
+    copy of an item each step takes. ``resources`` are the durations of all motions of the plan, the agents
+    and the tools. Raises :class:`UserError` if the durations have too many digits to be added up in ticks.
     """
     seconds = [Fraction(resources.durations[unit.motion].seconds) for unit in plan]
     ticks_per_second = lcm(*(duration.denominator for duration in seconds))

@@ -283,7 +283,7 @@ class StoreBuilder:
         return matches
 
     def _read_node(self, node_id: int) -> ObjectNode:
-        """Read the node with an id from the database."""
+        """Read the node with an id from the database, to which its row must have been written."""
         label, *columns = self._database.execute(
             "SELECT name, states, relations, contents FROM node JOIN label ON label.id = label "
             "WHERE node.id = ?",
