@@ -61,8 +61,9 @@ def completion(text: EditedText, names: Names, parameters: object) -> Json:
     """Return the completions at the position in the parameters of a request, at most 100.
 
     These are the names of the kinds that may stand there and that contain the text before the position. Names
-    that begin with this text come first, and then the most frequent. At the beginning of a line, the
-    completions are those of :func:`_line_head_items`.
+    that begin with this text come first, and then the most frequent. Case is ignored. The text typed so far
+    is a completion only if it also stands elsewhere. ``isIncomplete`` says that more than 100 names match. At
+    the beginning of a line, the completions are those of :func:`_line_head_items`.
     """
     line, letter = text.requested_position(parameters)
     content = text.lines[line]
@@ -169,8 +170,8 @@ def _hover(checked: CheckedText, parameters: object) -> Json | None:
     """Return a hover text on the node of a line: its achievers, its consumers, and whether it is available.
 
     If a name is at the position, the text also says how often it occurs. Return ``None`` if the line belongs
-    to no node. The kitchen in the folder of the file is read. Without one, a node that no unit makes counts
-    as available.
+    to no node. The kitchen in the folder of the file is read. If there is no kitchen, or none that can be
+    read, a node that no unit makes counts as available.
     """
     text = checked.text
     line, letter = text.requested_position(parameters)
@@ -194,7 +195,10 @@ def _hover(checked: CheckedText, parameters: object) -> Json | None:
 
 
 def _node_at(checked: CheckedText, line: int) -> ObjectNode | None:
-    """Return the object node to which a line belongs; ``None`` if it belongs to no node."""
+    """Return the object node to which a line belongs; ``None`` if it belongs to no node.
+
+    A state, a comment or an empty line belongs to the object line above it.
+    """
     lines = checked.text.lines
     while line > 0 and lines[line][:1] in {"S", "#", ""}:
         line -= 1
@@ -223,7 +227,10 @@ def _achievers_and_consumers(
 
 
 def _units_text(units: list[_UnitLine], max_shown: int = 8) -> str:
-    """Return units as text, such as ``mix (line 4), bake (line 9)``; at most ``max_shown`` are named."""
+    """Return units as text, such as ``mix (line 4), bake (line 9)``; ``no unit`` for an empty list.
+
+    At most ``max_shown`` units are named; the text then ends with the number of the others: ``3 more``.
+    """
     shown = [f"{_escape_markdown(motion)} (line {line + 1})" for line, motion in units[:max_shown]]
     if len(units) > max_shown:
         shown.append(f"{len(units) - max_shown} more")
@@ -238,7 +245,8 @@ def _escape_markdown(text: str) -> str:
 def _definitions(checked: CheckedText, parameters: object) -> list[Json]:
     """Return the locations where the achievers of the node of a line list it as an output.
 
-    Return no locations if the line belongs to no node.
+    If a unit is not found to list the node, its location is its first line. Return no locations if the line
+    belongs to no node.
     """
     text = checked.text
     node = _node_at(checked, text.requested_position(parameters)[0])
@@ -255,7 +263,8 @@ def _definitions(checked: CheckedText, parameters: object) -> list[Json]:
 def _unit_extents(checked: CheckedText) -> Iterator[tuple[int, int, int, int]]:
     """Yield the extent of each unit, in order: its first line, its motion line, its last line, and its id.
 
-    Lines are indices from 0. Yields nothing for JSON.
+    Lines are indices from 0. The last line is that of ``//``, or the last line of the text without it. Yields
+    nothing for JSON.
     """
     lines, files = checked.text.lines, checked.names.files
     starts = sorted((copy.first_index, unit) for unit, copies in enumerate(files.copies) for copy in copies)
@@ -267,7 +276,10 @@ def _unit_extents(checked: CheckedText) -> Iterator[tuple[int, int, int, int]]:
 
 
 def _document_symbols(checked: CheckedText, _: object) -> list[Json]:
-    """Return the outline of the text: each unit by its motion and the labels of what it makes."""
+    """Return the outline of the text: each unit by its motion and the labels of what it makes.
+
+    Outputs that are also inputs are left out. The outline of JSON is empty.
+    """
     network, position = checked.names.network, checked.text.position
     symbols = []
     for first, motion, end, unit in _unit_extents(checked):
@@ -286,7 +298,7 @@ def _document_symbols(checked: CheckedText, _: object) -> list[Json]:
 
 
 def _folding_ranges(checked: CheckedText, _: object) -> list[Json]:
-    """Return the ranges that can be folded: each unit, without its separator."""
+    """Return the ranges that can be folded: each unit, without its last line; no ranges for JSON."""
     return [{"startLine": first, "endLine": end - 1} for first, _, end, _ in _unit_extents(checked)]
 
 
@@ -333,7 +345,9 @@ def format_edits(text: EditedText) -> list[Json]:
 def _quick_fixes(checked: CheckedText, parameters: object) -> list[Json]:
     """Return the actions for the findings on a range of lines: those that fix, then those that silence.
 
-    Only the first 100 findings in the range get actions.
+    Only the first 100 findings in the range get actions. A finding with a rename has no other fix. A fix is
+    left out if the line is not as it was when it was linted. ``noqa`` findings and findings in JSON cannot be
+    silenced.
     """
     text = checked.text
     first, last = (parameter(parameters, f"range.{end}.line", int) for end in ("start", "end"))

@@ -34,7 +34,8 @@ class EditedText:
     def requested_position(self, parameters: object) -> tuple[int, int]:
         """Return line and letter of the position in the parameters of a request.
 
-        A position below the text is in its last line.
+        A position below the text is in its last line, and one beyond the end of a line is at its end. Raises
+        :class:`RequestError` for parameters without a position.
         """
         line = min(parameter(parameters, "position.line", int), len(self.lines) - 1)
         column = parameter(parameters, "position.character", int)
@@ -47,15 +48,24 @@ class EditedText:
         return {"line": line, "character": len(prefix.encode("utf-16-le", "surrogatepass")) // 2}
 
     def range(self, line: int, start: int = 0, end: int = sys.maxsize) -> Json:
-        """Return letters of a line, from ``start`` to before ``end``, as a range of the protocol."""
+        """Return letters of a line, from ``start`` to before ``end``, as a range of the protocol.
+
+        By default, ``end`` is the end of the line.
+        """
         return {"start": self.position(line, start), "end": self.position(line, end)}
 
     def edit(self, text: str, line: int, start: int = 0, end: int = sys.maxsize) -> Json:
-        """Return the edit that replaces letters of a line, from ``start`` to before ``end``, by a text."""
+        """Return the edit that replaces letters of a line, from ``start`` to before ``end``, by a text.
+
+        By default, it replaces the whole line.
+        """
         return {"range": self.range(line, start, end), "newText": text}
 
     def edits_to(self, lines: list[str]) -> list[Json]:
-        """Return the edits that turn the text into a text with these lines; unchanged lines get no edit."""
+        """Return the edits that turn the text into a text with these lines; unchanged lines get no edit.
+
+        A single edit covers the last line of the shorter text and all lines after it.
+        """
         last = min(len(self.lines), len(lines)) - 1  # the edit of this line covers all lines after it
         edits = [
             self.edit(lines[number], number) for number in range(last) if lines[number] != self.lines[number]

@@ -36,7 +36,9 @@ class Field(NamedTuple):
 def field_at(line: str, position: int) -> Field | None:
     """Return the field of a line that contains the letter at ``position`` or ends before it.
 
-    Return ``None`` if no name can be there.
+    Return ``None`` if no name can be there. In the line of a state, a name in brackets is that of an object,
+    and the text before brackets is a word of relations. Blanks around a name and asterisks after a motion are
+    not part of it.
     """
     head = _LINE_HEAD.match(line)
     if head is None or position < head.end():

@@ -31,7 +31,8 @@ class RequestError(Exception):
 def read_message(stream: BinaryIO) -> Json | None:
     """Read the next message from a stream, and wait for it.
 
-    Return ``{}`` for a message that is no JSON object. Return ``None`` at the end of the stream.
+    Return ``{}`` for a message that is no JSON object. Return ``None`` at the end of the stream, or for a
+    message of length 0. Raises :class:`ValueError` for a length that is no number.
     """
     length = 0
     while (line := stream.readline()).strip():

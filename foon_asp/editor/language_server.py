@@ -74,7 +74,9 @@ class LanguageServer:
     async def _respond(self, message: Json) -> None:
         """Process a message, and write a response unless the message is a notification.
 
-        Any error becomes an error response; an error about a notification is dropped.
+        Any error becomes an error response; an error about a notification is dropped. Requests after
+        ``shutdown`` are refused. If the text changes before it was checked, the error is
+        ``CONTENT_MODIFIED``.
         """
         id_ = message["id"] if type(message.get("id")) in {str, int} else None
         is_request = "id" in message or "method" not in message
@@ -109,7 +111,7 @@ class LanguageServer:
         raise RequestError(ErrorCode.METHOD_NOT_FOUND, f"there is no method {method}")
 
     def _initialize(self, parameters: object) -> Json:
-        """Return the capabilities of the server."""
+        """Return the capabilities of the server; raises :class:`RequestError` without those of the editor."""
         parameter(parameters, "capabilities", dict)
         return {
             "capabilities": _CAPABILITIES,
@@ -122,7 +124,10 @@ class LanguageServer:
         self._schedule_check(EditedText(uri, parameter(parameters, "textDocument.text", str)), 0)
 
     def _change_text(self, parameters: object) -> None:
-        """Replace a text by its new version, and check this one unless it changes within a quarter second."""
+        """Replace a text by its new version. It is checked unless it changes again within a quarter second.
+
+        Raises :class:`RequestError` if the text is not open.
+        """
         text = self._text_of(parameters)
         for change in parameter(parameters, "contentChanges", list):
             # sooner, texts would be checked while somebody types

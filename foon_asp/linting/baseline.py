@@ -76,7 +76,7 @@ def read_baseline(file: Path) -> Baseline:
 def check_replaceable(file: Path) -> None:
     """Raise :class:`UserError` for a file that is neither empty nor a baseline.
 
-    A file that does not exist passes.
+    A file that does not exist passes, and so does a folder.
     """
     if file.is_file() and read_content(file):
         try:

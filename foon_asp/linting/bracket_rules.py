@@ -49,7 +49,8 @@ def _reason_to_swap_brackets(
     """Return in words why an attribute probably needs the other kind of bracket; empty if nothing says so.
 
     ``counts``: by attribute, the number of lines that have it. The reasons are the three that
-    :func:`find_other_brackets` names. Only the first one is looked for if there are several ingredients.
+    :func:`find_other_brackets` names. Only the first one is looked for if there are several ingredients, or
+    if the word nearly always has the kind of bracket that the attribute has.
     """
     other: Bracket = Contents if isinstance(attribute, Relation) else Relation
     usual = vocabulary.usual_bracket(attribute.word)
@@ -117,7 +118,9 @@ def find_misread_lines(context: Context) -> Iterator[Diagnostic]:
 def _suggested_attribute(state: str, context: Context) -> str:
     """Return the text of the relation or contents that a state probably stands for; empty for a likely state.
 
-    For example, ``in [bowl]`` for the state ``in bowl``.
+    For example, ``in [bowl]`` for the state ``in bowl``. The names and words are those of the files and of
+    the vocabulary. The text in the brackets has to be a known object, or several known objects in ``{ }``;
+    after ``contains`` it can be any text that is no known state.
     """
     all_names, words = context.all_names, state.split(" ")
     for length in range(min(3, len(words) - 1), 0, -1):  # a relation has up to three words: on top of

@@ -58,8 +58,9 @@ class Chain:
         """Return the position of the nearest unit that makes a node similar to ``node``, and that node's id.
 
         ``node`` is the id of a node that the unit at the position ``consumer`` needs. A node is similar if it
-        differs little and no unit needs it, or if it has one state more. Only the 25 units before
-        ``consumer`` are searched. Return ``None`` if they make no similar node.
+        differs little and no unit needs it. Up to 8 units back, it is also similar if it has one state more.
+        Only the 25 units before ``consumer`` are searched. Of several similar nodes of a unit, the one with
+        the least id is returned. Return ``None`` if no unit makes a similar node.
         """
         wanted = self.objects[node]
         for distance in range(1, min(consumer, MAX_DISTANCE) + 1):
@@ -102,9 +103,10 @@ def _differ_little(needed: ObjectNode, made: ObjectNode, distance: int) -> bool:
     """Whether two nodes differ so little that they may be meant to be one, for example in one state.
 
     They may differ in a slip of spelling, in one state, in one relation, or in one of several ingredients.
-    Nodes near each other may also differ in their labels alone, or have one state or relation in place of
-    another. ``distance`` is the number of units from the one that makes ``made`` to the one that needs
-    ``needed``.
+    If they have several attributes, they may differ in their labels alone up to 2 units apart, or have one
+    state or relation in place of another up to 8 units apart. If ``needed`` has neither relations nor
+    contents, it may lack a relation only up to 2 units apart. ``distance`` is the number of units from the
+    one that makes ``made`` to the one that needs ``needed``.
     """
     if needed.label != made.label:
         return distance <= _SHORT_DISTANCE and _count_attributes(needed) > 1 and needed[1:] == made[1:]

@@ -29,7 +29,7 @@ def _units_with_habits(context: Context) -> Iterator[tuple[int, str, Changes, Ha
 def _finding_at(context: Context, unit: int, side: int, node: int, message: str) -> Diagnostic:
     """Return a finding about an input (``side`` 0) or output (1) in the first copy of a unit.
 
-    ``node`` is its id. Its label is put before the message.
+    ``node`` is the id of the input or output, whose label is put before the message.
     """
     object_node = context.network.objects[node]
     copy = context.files.copies[unit][0]

@@ -43,7 +43,10 @@ def find_dead_cycles(context: Context) -> Iterator[Diagnostic]:
 
 
 def _available_nodes(context: Context) -> set[int]:
-    """Return the ids of nodes that a linted kitchen lists, and of utensils without relations and contents."""
+    """Return the ids of nodes that a linted kitchen lists, and of utensils without relations and contents.
+
+    Utensils are those of the vocabulary.
+    """
     available = {
         number
         for number, node in enumerate(context.network.objects)

@@ -68,7 +68,8 @@ def _invisible_character_fault(line: str) -> tuple[int, str] | None:
 def _mixed_script_fault(line: str) -> tuple[int, str] | None:
     """Return the column, from 1, of the first letter of another script within a word, and the message.
 
-    The other script is the one with the fewest letters in the word. ``None`` if every word has one script.
+    Only Latin, Cyrillic and Greek letters count. The other script is the one with the fewest letters in the
+    word. ``None`` if every word has one script.
     """
     for match in _LETTERS_OF_WORD.finditer(line):
         scripts: dict[str, list[int]] = {}

@@ -86,7 +86,8 @@ def find_settings(files: Sequence[Path]) -> LintSettings:
 def read_settings(file: Path) -> LintSettings | None:
     """Read the settings in a TOML file; ``None`` if it has no table for them.
 
-    Raises :class:`InputError` with line and column of everything that is not understood.
+    Raises :class:`InputError` with line and column of everything that is not understood. In
+    ``foon-asp.toml``, this includes a table ``[lint]``.
     """
     text = read_plain_text(file)
     try:

@@ -26,7 +26,8 @@ _LINE_BREAK = re.compile(r"[\r\n]")
 def with_tables(paths: Iterable[Path], files: Iterable[Path]) -> list[Path]:
     """Return ``files``, and then the tables in the folders among ``paths``, each file once.
 
-    Tables are files with a name such as ``motion.txt`` (rates) or ``utensils.txt``.
+    Tables are files with a name such as ``motion.txt`` (rates) or ``utensils.txt``. Folders are searched with
+    all folders in them.
     """
     folders = [path for path in paths if path.is_dir()]
     tables = [file for folder in folders for file in sorted(folder.rglob("*.txt")) if file.name in TABLES]
@@ -116,7 +117,8 @@ class LintedFiles:
     def _read_json(self, text: str, file: Path, format_: Format, source_lines: list[str]) -> None:
         """Read a JSON file as a sheet of equivalent lines of FOON text, and add its units to the network.
 
-        ``source_lines`` are the lines of the file itself.
+        ``source_lines`` are the lines of the file itself. Errors in a kitchen or list of goals and values
+        that have no meaning there become remarks.
         """
         lines: list[str] = []
         sources: list[Source] = []

@@ -24,7 +24,7 @@ def is_mendable(finding: Diagnostic, unsafe: bool = False) -> bool:
 def mend(content: bytes, findings: Iterable[Diagnostic], unsafe: bool = False) -> bytes:
     """Return the bytes of a file with the fixes of findings applied.
 
-    With ``unsafe``, fixes that change what is read and renames in the whole file are applied, too.
+    With ``unsafe``, fixes that change what is read are applied, too, and then renames in the whole file.
 
     All other bytes stay: line ends, a byte order mark, and lines without a fix. A line that is not as it was
     when it was linted stays, too. If a ``//`` is added below the last unit, it gets the line end of the line

@@ -103,8 +103,8 @@ def _unlisted_name_findings(
     """Yield a finding for each name in a kind of bracket that is never an object of a unit.
 
     ``bracket`` is ``Relation`` for ``[ ]`` or ``Contents`` for ``{ }``. ``role`` and ``advice`` are parts of
-    the messages. Names that are reported as `near-name` or `misspelt` are skipped. So are names that resemble
-    no object and have only words of the vocabulary.
+    the messages. Brackets in kitchens and lists of goals do not count. Names that are reported as `near-name`
+    or `misspelt` are skipped. So are names that resemble no object and have only words of the vocabulary.
     """
     names, vocabulary = context.names, context.vocabulary
     for name, mentions in names.mentions[Kind.OBJECT].items():

@@ -51,8 +51,9 @@ def near_names(
 
     Names that only differ in doubled letters, capitals, blanks or hyphens are a pair at any frequency
     (``drinking glas``, ``hashbrown``). A rare name and a much more frequent name are a pair if one letter of
-    a word is missing, added, changed or swapped (``baking try``). The first letter of the word must be equal.
-    Grammatical endings (egg, eggs) and different digits are no slips. A rare name is in one pair at most.
+    a word is missing, added, changed or swapped (``baking try``). A rare name has at most five mentions. The
+    first letter of the word must be equal. Grammatical endings (egg, eggs) and different digits are no slips.
+    A rare name is in one pair at most. Names of more than 60 letters are in no pair.
 
     Two names are compared only if their deletion neighbourhoods overlap. The deletion neighbourhood of a name
     is the name and all texts that lack one of its letters.
@@ -104,7 +105,7 @@ def _spelling_variants(counts: dict[str, int], known_words: Collection[str]) -> 
 
     The second name is the usual one: it has only known words, or else it is the most frequent. Short names
     must also agree in their doubled letters. A name is short if it has less than five letters when a doubled
-    letter counts once.
+    letter counts once. Names of more than 60 letters are left out.
     """
     spellings: dict[str, list[str]] = {}
     for name in counts:
@@ -165,14 +166,17 @@ def deletion_index(words: Iterable[str]) -> dict[str, list[str]]:
 
 
 def _has_unknown_word(name: str, known_words: Collection[str]) -> bool:
-    """Whether a name has a word that is not known; false if ``known_words`` is empty."""
+    """Whether a name has a word that is not known; false if ``known_words`` is empty.
+
+    Words with other characters than letters are ignored.
+    """
     return bool(known_words) and any(word.isalpha() and word not in known_words for word in name.split(" "))
 
 
 def _differ_by_a_slip(word: str, other: str, verbs: bool) -> bool:
     """Whether two words differ by one letter after the first, and not only in their grammatical ending.
 
-    The letter is missing, added, changed or swapped.
+    The letter is missing, added, changed or swapped. A final d in place of ed is a slip, too: ``gratd``.
     """
     ending = _VERB_ENDING if verbs else _PLURAL_ENDING
     is_grammar = ending.sub("", word) == ending.sub("", other)
@@ -190,7 +194,9 @@ def _is_slip(
 ) -> bool:
     """Whether a rare name is probably a slip of a frequent one, from which it differs in one word.
 
-    The parameters are those of :func:`near_names`.
+    The parameters are those of :func:`near_names`. If the word in which ``rare`` differs is known, ``rare``
+    is no slip. If only the word of ``frequent`` is known, or only ``rare`` is one-sided, ``rare`` is a slip
+    however often it is mentioned. Otherwise, a slip has at most five mentions and is much rarer.
     """
     words, others = rare.split(" "), frequent.split(" ")
     differing = [(a, b) for a, b in zip(words, others, strict=False) if a != b]
@@ -212,7 +218,7 @@ def _is_rare_enough(word: str, other: str, rare: int, frequent: int) -> bool:
 
     ``rare`` and ``frequent`` are the numbers of mentions of the names with these words. How many times more
     frequent the other name must be depends on the length of the words and on their difference: swapped
-    letters, a changed letter, or a missing one.
+    letters, a changed letter, or a missing one. It must have at least three mentions.
     """
     # Short words, and words with another letter, are mostly words of their own: dip, drip; batter, butter.
     shortest, ratio = min(len(word), len(other)), frequent / rare

@@ -71,7 +71,8 @@ def _commented_sheets(context: Context) -> Iterator[Sheet]:
 def _noqa_comments(sheet: Sheet) -> list[_Comment]:
     """Return the noqa comments of a sheet, in order.
 
-    Comments below the last line with content are about the last line of the sheet.
+    Comments below the last line with content are about the last line of the sheet. Without a colon after
+    ``noqa``, a comment silences all codes.
     """
     comments: list[_Comment] = []
     following = len(sheet.lines)

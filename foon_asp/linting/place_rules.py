@@ -28,8 +28,9 @@ def unheld_nodes(side: Side, habits: Habits) -> FaultyNodes:
     """Yield each food that is in a container whose contents do not list it, with the message.
 
     Skipped are containers with several such foods, containers whose label is not unique on this side, and
-    containers that are ingredients themselves. Also skipped are foods that another node contains, and foods
-    that share a word with the contents.
+    containers that are ingredients themselves. Also skipped are foods that another node contains, foods with
+    contents of their own, and foods that share a word with the contents. A container is skipped as well if
+    one of its listed contents is in it on this side and has contents itself.
     """
     for holder in side.nodes:
         contents = content_names(holder)
@@ -39,7 +40,7 @@ def unheld_nodes(side: Side, habits: Habits) -> FaultyNodes:
             continue
         holder_places = {related_object for _, related_object in holder.relations}
         inside = [node for node in side.nodes if ("in", holder.label) in node.relations]
-        extra = [
+        unlisted = [
             node
             for node in inside
             if node.label in habits.foods
@@ -50,8 +51,8 @@ def unheld_nodes(side: Side, habits: Habits) -> FaultyNodes:
             and not content_names(node)
             and words_in([node.label]).isdisjoint(words_in(contents))
         ]
-        if len(extra) == 1:
-            (node,) = extra
+        if len(unlisted) == 1:
+            (node,) = unlisted
             listed = ", ".join(sorted(contents))
             yield node, f"{node.label!r} is in {holder.label!r} here, which contains {listed}, and not it"
 
@@ -134,7 +135,7 @@ def _unplaced_foods(side: Side, places: Collection[str], habits: Habits) -> Faul
 
     ``places`` are the labels that may be places; the containing node must have one of them. If the food is
     the only content, and the other side of the unit states that it is in the container, the unit puts it
-    there, and the food is skipped.
+    there, and the food is skipped. So are foods whose label is not unique on this side.
     """
     for node in side.nodes:
         if node.relations or node.contents or node.label not in habits.foods:

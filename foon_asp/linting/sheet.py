@@ -117,7 +117,8 @@ class Sheet:
     def written_blocks(self, start: int) -> Iterator[WrittenBlock | None]:
         """Yield the objects from a line on, as they are written, and ``None`` at each ``//``.
 
-        ``start`` is the index of the line.
+        ``start`` is the index of the line. States without an object line above them are left out, as are
+        states below a line that cannot be parsed.
         """
         block: WrittenBlock | None = None
         for number in range(start, len(self.lines)):

@@ -84,6 +84,7 @@ def _spans(text: str) -> list[tuple[_Clock, _Clock]]:
     """Return the spans of time on a motion line, as pairs of a start and an end.
 
     They are two fields, such as ``0:12`` and ``0:34``, or one field, such as ``<0:12-0:34,0:40-0:44>``.
+    Without a dash, the line has to have exactly two times.
     """
     start = text.find("\t", text.find("\t") + 1)
     spans = [(_Clock.of(match, 1), _Clock.of(match, 2)) for match in _SPAN.finditer(text, start)]
@@ -115,7 +116,7 @@ def _odd_times(steps: list[_Step]) -> dict[int, tuple[str, int]]:
     length = median(max(0, end.seconds - start.seconds) for step in steps for start, end in step.spans)
 
     def clock_fault(clock: _Clock) -> str:
-        """Return the message about an unlikely time; empty for a likely one."""
+        """Return the message about an unlikely time, compared with all times; empty for a likely one."""
         parts = clock.text.split(":")
         if any(int(number) >= _MINUTE for number in parts[1:]):
             return f"{clock.text!r} has more than 59 seconds or minutes"
@@ -130,7 +131,10 @@ def _odd_times(steps: list[_Step]) -> dict[int, tuple[str, int]]:
         return ""
 
     def span_fault(start: _Clock, end: _Clock) -> str:
-        """Return the message about an unlikely span of time; empty for a likely one."""
+        """Return the message about a span that ends before it begins or is too long; empty for a likely one.
+
+        It is too long from 20 minutes on if it is also 20 times as long as the median of all spans.
+        """
         if end.seconds < start.seconds:
             return f"the step ends at {end.text}, before it begins at {start.text}"
         if end.seconds - start.seconds >= max(_LONG, 20 * length):

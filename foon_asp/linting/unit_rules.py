@@ -112,7 +112,8 @@ def _clashes(
     """Yield the label of an object, two clashing attributes, and the indices of lines with the second one.
 
     Each label with its two attributes is yielded once. ``is_clash`` is asked with an earlier and a later
-    attribute of one object.
+    attribute of one object. If an attribute clashes with several earlier ones, it is yielded with the first
+    of them.
     """
     lines_by_clash: dict[tuple[str, _Attribute, _Attribute], list[int]] = {}
     for block in sheet.longer_blocks:

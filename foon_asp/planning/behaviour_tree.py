@@ -81,7 +81,8 @@ def behaviour_tree_text(name: str, branches: Sequence[Branch], is_used_up: bool)
         name: The name of the root, for people.
         branches: The trees to follow, the first one first. If a branch has failed as often as it may, the
             next one begins with the nodes that are then available.
-        is_used_up: Whether items are used up; then there is one branch.
+        is_used_up: Whether items are used up; then there is one branch. Its ``failures`` have no effect,
+            since each action is repeated until it succeeds.
     """
     root = ElementTree.Element("root", BTCPP_format="4", main_tree_to_execute="Plan")
     tree = ElementTree.SubElement(root, "BehaviorTree", ID="Plan")
@@ -146,7 +147,10 @@ def _add_condition(parent: ElementTree.Element, nodes: Iterable[Node]) -> None:
 
 
 def _add_action(parent: ElementTree.Element, step: RobotStep) -> None:
-    """Add the action that executes the unit of a step, with its ports."""
+    """Add the action that executes the unit of a step, with its ports.
+
+    The ports for rate and duration are left out if these are not known.
+    """
     numbers = {"rate": step.rate, "duration": step.duration}
     ElementTree.SubElement(
         parent,
@@ -182,5 +186,5 @@ def _step_name(step: RobotStep) -> str:
 
 
 def _node_list(nodes: Iterable[Node]) -> str:
-    """Return the names of object nodes as the value of a port."""
+    """Return the names of object nodes as the value of a port, separated by ``;``."""
     return LIST_SEPARATOR.join(map(node_name, nodes))

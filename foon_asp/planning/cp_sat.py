@@ -60,7 +60,8 @@ class _Model:
     def minimize_makespan(self, answers: FileIO) -> str:
         """Search for a schedule of least makespan; return ``proved``, or else the status of CP-SAT.
 
-        Each better schedule is sent as ``found``, each better bound as ``bound``.
+        Each better schedule is sent as ``found`` with the starts of the steps in ticks, each better bound as
+        ``bound`` with a float. To be called once, since it adds constraints to the model.
         """
         model, library = self._model, self._library
         self._constrain_tools()
@@ -90,7 +91,8 @@ class _Model:
     def _constrain_tools(self) -> None:
         """Add the constraints that a use of a tool occupies one copy, and that its steps do not overlap.
 
-        Steps that share a copy of an item do not overlap either.
+        The copy is occupied from the start of the first step to the end of the last one. Steps that share a
+        copy of an item do not overlap either.
         """
         model = self._model
         in_use: dict[ToolName, list[Any]] = {}

@@ -95,7 +95,10 @@ class _Relaxation:
             facts = facts | missing
 
     def _deletes(self, needed: set[int]) -> bool:
-        """Whether an operator deletes a fact of ``needed``, or a condition of an effect that adds one."""
+        """Whether an operator may delete a fact of ``needed``, or a condition of an effect that adds one.
+
+        An effect may delete every other value that its variable can have when the effect takes place.
+        """
         needed = self._with_effect_conditions(needed)
         for operator in self._task.operators:
             for effect in operator.effects:
@@ -114,8 +117,9 @@ class _Relaxation:
 
         The conditions of the union become preconditions, and the action adds all effects whose conditions are
         in the union. Conditions that hold initially or are preconditions always hold, since nothing is
-        deleted. Conditional effects that add no relevant fact are left out. Raises :class:`UserError` for
-        more than ``max_variants`` unions; their number may be exponential.
+        deleted. A conditional effect is left out if it adds no relevant fact, or one that always holds. The
+        cost is 1 if the task does not count costs. Raises :class:`UserError` for more than ``max_variants``
+        unions; their number may be exponential.
         """
         holding = self._start.union(operator.preconditions)
         always: dict[int, None] = {}
@@ -146,8 +150,8 @@ class _Relaxation:
         """Yield actions that derive the default values of derived variables (Clark's completion).
 
         A variable has its default value if each axiom that sets it has a condition that fails. If several
-        values make an axiom fail, a new fact of the task says that it fails. Raises :class:`UserError` if
-        such a derivation is cyclic.
+        values make an axiom fail, a new fact of the task says that it fails. Default values that these
+        derivations need are derived as well. Raises :class:`UserError` if such a derivation is cyclic.
         """
         graph: dict[int, set[int]] = {}
         pending = sorted(defaults)

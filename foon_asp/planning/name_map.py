@@ -39,7 +39,10 @@ class NameMap(NamedTuple):
 
 
 def name_map_of(task: PlanningTask) -> NameMap:
-    """Return the name map of a planning task."""
+    """Return the name map of a planning task.
+
+    ``taking`` has a name for every node of the task, including nodes that no action takes.
+    """
     problem, network = task.problem, task.problem.network
     return NameMap(
         {action.name: network.unit(action.unit) for action in task.actions if action.unit is not None},

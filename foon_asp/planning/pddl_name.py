@@ -10,7 +10,8 @@ def pddl_name(kind: str, number: int, words: str) -> str:
     """Return an identifier such as ``u580-pour``; kind and number alone make it unique.
 
     ``words`` are reduced to lower-case ASCII letters, digits and dashes, since PDDL ignores case and allows
-    nothing else. If nothing of them is left, the identifier is ``u580``.
+    nothing else. They are cut off after 60 characters. If nothing of them is left, the identifier is
+    ``u580``.
     """
     plain = unicodedata.normalize("NFKD", words).encode("ascii", "ignore").decode().lower()
     suffix = _SEPARATOR.sub("-", plain).strip("-")[:60].rstrip("-")

@@ -53,7 +53,10 @@ class PddlOutline:
         return split_lines(self.text)
 
     def section(self, name: str) -> set[str]:
-        """Return the words in all sections of a name, such as ``:types``, at any depth of parentheses."""
+        """Return the words in all sections of a name, such as ``:types``, at any depth of parentheses.
+
+        A dash is a word as well. The name itself is left out.
+        """
         words: set[str] = set()
         depth = section_depth = 0
         for previous, token in zip(self.tokens, self.tokens[1:], strict=False):
@@ -67,7 +70,10 @@ class PddlOutline:
         return words
 
     def require_types(self, types: set[str]) -> None:
-        """Raise :class:`InputError` for a type, written after a dash, that is not in ``types``."""
+        """Raise :class:`InputError` for a type, written after a dash, that is not in ``types``.
+
+        In ``(either A B)`` after a dash, both types are checked.
+        """
         tokens = self.tokens
         for index, token in enumerate(tokens[:-2]):
             if token.text != "-":
@@ -84,7 +90,7 @@ class PddlOutline:
     def require_costs(self, functions: set[str]) -> None:
         """Raise :class:`InputError` for a cost function not in ``functions``, or a second cost of an action.
 
-        The translator would count only the last cost of an action.
+        The translator would count only the last cost of an action. A cost that is a number passes.
         """
         costs = 0
         for index, token in enumerate(self.tokens[:-5]):
@@ -109,7 +115,7 @@ class PddlOutline:
 def require_task(domain: PddlOutline, problem: PddlOutline) -> None:
     """Raise :class:`InputError` if a problem is of another domain, or a type or cost is not declared.
 
-    Raise it for an action with two costs as well.
+    Raise it for an action with two costs as well. Only the first fault is reported.
     """
     for token, word in zip(problem.tokens, problem.tokens[1:], strict=False):
         if token.text == ":domain" and word.text != domain.name:

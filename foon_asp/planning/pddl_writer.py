@@ -12,12 +12,15 @@ COPIES = "copies"
 
 
 def domain_text(task: PlanningTask) -> str:
-    """Return the PDDL domain: a constant for each object node, and an action for each unit."""
+    """Return the PDDL domain: a constant for each object node, and the actions of the task.
+
+    Actions have no costs if each costs 1. Comments say how items and costs are modelled.
+    """
     return "\n".join(_domain_lines(task)) + "\n"
 
 
 def problem_text(task: PlanningTask) -> str:
-    """Return the PDDL problem: the initial state and the goals."""
+    """Return the PDDL problem: the initial state, the goals, and the metric unless each action costs 1."""
     return "\n".join(_problem_lines(task)) + "\n"
 
 

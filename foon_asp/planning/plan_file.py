@@ -47,9 +47,9 @@ class PlanStep(NamedTuple):
 def read_plan_text(text: str, file: str, names: NameMap) -> Sequence[PlanStep]:
     """Return the steps of a plan that execute units, in order; steps that take a kitchen item are left out.
 
-    Upper case in names does not count. Blank lines, comments and a heading are skipped. Raises one
-    :class:`InputError` for all lines that are no steps of a plan or have unknown names. Raises it for a log
-    without a plan as well.
+    Upper case in names does not count. Blank lines, comments and headings before the first step are skipped.
+    Raises one :class:`InputError` for all lines that are no steps of a plan or have unknown names. Raises it
+    for a log without a plan as well.
     """
     steps: list[PlanStep] = []
     faults: list[Diagnostic] = []

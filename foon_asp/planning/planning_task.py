@@ -106,9 +106,9 @@ def planning_task(
     If kitchen items have a cost, the task has an action for each item that some unit needs, which takes the
     item.
 
-    Raises :class:`UserError` if planners cannot add up the costs of an objective. Where items are used up,
-    also for several objectives, for an objective by which items of a stock have a cost, and for ``merged`` if
-    amounts count.
+    Raises :class:`UserError` if the costs of an objective are not known, or if planners cannot add them up.
+    Where items are used up, also for several objectives, for an objective by which items of a stock have a
+    cost, and for ``merged`` if amounts count.
     """
     network, endless = problem.network, problem.endless
     problem.require_known_for(objectives)

@@ -72,11 +72,11 @@ def best_policy(problem: Problem, trees: Sequence[tuple[int, ...]], retries: int
 
     Among policies of equal chance, one with the fewest branches is returned. If there are more policies than
     :attr:`PolicyLimits.policies`, only the first ones are compared, which have the fewest branches. If there
-    are more states or units than :class:`PolicyLimits` allows, ``bound`` is not exact.
+    are more states or units than :class:`PolicyLimits` allows, ``bound`` is only an upper bound.
 
     Parameters:
         problem: The problem, whose items last, with rates.
-        trees: Trees for its goals, by unit ids in an order that executes.
+        trees: Trees for its goals, at least one, by unit ids in an order that executes.
         retries: How many failed executions a run survives; the next failure ends it.
     """
     units = tuple(dict.fromkeys(unit for tree in trees for unit in tree))
@@ -98,7 +98,8 @@ def best_policy(problem: Problem, trees: Sequence[tuple[int, ...]], retries: int
 def _candidates(trees: Sequence[tuple[int, ...]], failures: int) -> Iterator[tuple[PolicyBranch, ...]]:
     """Yield the policies whose branches have this number of failures in total.
 
-    Each follows some of the trees, in some order. Policies with few branches come first.
+    Each follows some of the trees, in some order and each at most once. Every branch has at least one
+    failure. Policies with few branches come first.
     """
     for number in range(1, min(len(trees), failures) + 1):
         for order in itertools.permutations(trees, number):
@@ -145,7 +146,8 @@ class _ExecutionModel:
 def _chance(problem: Problem, branches: tuple[PolicyBranch, ...]) -> Fraction:
     """Return the exact chance that the branches, followed one after the other, make the goals.
 
-    A unit whose outputs are all available already is skipped.
+    A unit whose outputs are all available already is skipped. A branch begins with the nodes that are
+    available when the branch before it ends.
     """
     model = _ExecutionModel(problem)
     # by branch, position in it, and minus the failures left: a success and a failure lead to later keys
@@ -165,12 +167,12 @@ def _chance(problem: Problem, branches: tuple[PolicyBranch, ...]) -> Fraction:
                 continue
             unit = units[index]
             rate = model.rate(unit)
-            after = [((branch, index + 1, failures), state | model.makes(unit), rate)]
+            successors = [((branch, index + 1, failures), state | model.makes(unit), rate)]
             if failures < -1:
-                after.append(((branch, index, failures + 1), state, 1 - rate))
+                successors.append(((branch, index, failures + 1), state, 1 - rate))
             elif branch + 1 < len(branches):
-                after.append(((branch + 1, 0, -branches[branch + 1].failures), state, 1 - rate))
-            for following, new_state, share in after:
+                successors.append(((branch + 1, 0, -branches[branch + 1].failures), state, 1 - rate))
+            for following, new_state, share in successors:
                 if share:
                     if following not in waiting:
                         waiting[following] = {}
@@ -194,7 +196,7 @@ class _Optimum:
     def _value(self, state: State) -> tuple[Fraction, ...]:
         """Return the greatest chances from a state, by the number of failures left, from 0 to ``retries``.
 
-        Raises :class:`_TooManyStates` beyond the limit.
+        They are kept for further calls. Raises :class:`_TooManyStates` beyond the limit.
         """
         if self._model.goals <= state:
             return (Fraction(1),) * (self._retries + 1)
@@ -202,14 +204,14 @@ class _Optimum:
             if len(self._values) == POLICY_LIMITS.states:
                 raise _TooManyStates
             self._values[state] = ()  # counts while it is being computed
-            after = [
+            successes = [
                 (self._model.rate(unit), self._value(state | self._model.makes(unit)))
                 for unit in self._choices(state)
             ]
             values: list[Fraction] = []
             for failures in range(self._retries + 1):
                 failed = values[-1] if failures else Fraction(0)
-                outcomes = (rate * value[failures] + (1 - rate) * failed for rate, value in after)
+                outcomes = (rate * value[failures] + (1 - rate) * failed for rate, value in successes)
                 values.append(max(outcomes, default=Fraction(0)))
             self._values[state] = tuple(values)
         return self._values[state]

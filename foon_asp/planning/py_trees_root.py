@@ -61,7 +61,7 @@ def py_trees_root(xml: str | PathLike[str], execute: Execute, is_available: IsAv
     Tick it until its status is ``SUCCESS``; each tick after a failure tries again.
 
     Parameters:
-        xml: The text of the XML, or the path of a file.
+        xml: A string is the text of the XML; a path is that of a file with the text.
         execute: Is called with an :class:`Execution` to execute a unit; returns ``True`` if it succeeded,
             ``False`` if it failed, ``None`` while it is going on: then the next tick calls it again.
         is_available: Is called with the name of an object node; returns whether it is there.
@@ -153,7 +153,10 @@ def _leaf(name: str, ask: Callable[[], bool | None]) -> "Behaviour":
 
 
 def _execution(element: ElementTree.Element) -> Execution:
-    """Return the execution that the ports of an action element describe."""
+    """Return the execution that the ports of an action element describe.
+
+    Raises :class:`KeyError` without the step, the unit or the motion; other ports may be missing.
+    """
     ports = element.attrib
     needs, makes, acted_on, tools, origins, destinations = (
         _port_names(element, port) for port in ("needs", "makes", "acted_on", "tools", "from", "to")

@@ -137,10 +137,11 @@ def _is_tool(problem: Problem, unit: FunctionalUnit, node: ObjectNode) -> bool:
 
 
 def _places(network: Network, nodes: Sequence[ObjectNode], others: Iterable[ObjectNode]) -> tuple[Node, ...]:
-    """Return the places that ``nodes``, one side of a unit, are in, on or at, in order of their labels.
+    """Return the places of ``nodes``, which are one side of a unit, in alphabetical order of their labels.
 
-    A place is the node with its label among ``nodes``, or else among ``others``, the other side of the unit.
-    If there is no such node, the place has only the label.
+    Every object to which a node has a relation is a place, whatever the relation. A place is the node with
+    its label among ``nodes``, or else among ``others``, the other side of the unit. If there is no such node,
+    the place has only the label.
     """
     by_label: dict[str, ObjectNode] = {}
     for node in (*nodes, *others):
@@ -152,8 +153,9 @@ def _places(network: Network, nodes: Sequence[ObjectNode], others: Iterable[Obje
 def _changes(network: Network, unit: FunctionalUnit) -> Iterator[Change]:
     """Yield the objects of a unit with their nodes before and after it.
 
-    An input is paired with the same node among the outputs, or else with an output of its label. Outputs
-    without a partner come last.
+    An input is paired with the same node among the outputs, or else with an output of its label. An input
+    without such an output has no node after the unit. Outputs without a partner come last, and have no node
+    before it.
     """
     pairs: list[tuple[ObjectNode | None, ObjectNode | None]] = []
     remaining = list(unit.outputs)

@@ -65,7 +65,7 @@ class SasTask:
 def parse_sas(text: str, file: str) -> SasTask:
     """Return the planning task in the text of a file of the translator; ``file`` is its name in errors.
 
-    Raises :class:`InputError` for lines that are not of the format.
+    Raises :class:`InputError` for lines that are not of the format, and for another version than 3.
     """
     return _Reader(text, file).read()
 
@@ -104,7 +104,7 @@ class _Reader:
         return SasTask(self._file, facts, self._variables, derived, start, goal, operators, axioms, costed)
 
     def _variable(self) -> list[str]:
-        """Read a variable, add it to the variables, and return the names of its facts."""
+        """Read a variable, record it and whether it is derived, and return the names of its facts."""
         self._expect("begin_variable")
         variable = self._next_line()
         if self._number() != -1:
@@ -119,6 +119,7 @@ class _Reader:
         """Read an operator, and return it.
 
         If an effect requires a value of its variable before, this becomes a precondition of the operator.
+        Each precondition is listed once.
         """
         self._expect("begin_operator")
         name, source = self._next_line().rstrip(), Source(self._file, self._line)
@@ -210,7 +211,10 @@ def _fact_name(name: str, variable: str) -> str:
 
 
 def _unique_fact_names(names: list[list[str]]) -> list[str]:
-    """Return the names of all facts in order; names that occur twice get the number of their variable."""
+    """Return the names of all facts in order; every name that occurs twice gets the number of its variable.
+
+    For example, ``(open) [var3]``.
+    """
     counts = Counter(name for values in names for name in values)
     return [
         f"{name} [var{variable}]" if counts[name] > 1 else name

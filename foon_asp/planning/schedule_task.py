@@ -31,7 +31,7 @@ class ScheduleTask(NamedTuple):
     ``passive``: for each step, whether it occupies no agent.
     ``after``: for each step, the steps that it waits for.
     ``uses``: all uses of tools.
-    ``counts``: the number of copies of each tool.
+    ``counts``: the number of copies of each tool that has a use.
     ``agents``: the number of agents.
     ``sharing``: sets of steps that need the same copy of an item, so that they must not overlap.
     """
@@ -72,9 +72,9 @@ def schedule_task(
 ) -> ScheduleTask:
     """Return the scheduling task of an executable plan.
 
-    ``replay`` says which copy of an item each step takes. ``resources`` are the durations of motions, the
-    agents and the tools. Raises :class:`UserError` if the durations have too many digits to be added up in
-    ticks.
+    A tick is the longest fraction 1/n of a second of which all durations are multiples. ``replay`` says which
+    copy of an item each step takes. ``resources`` are the durations of all motions of the plan, the agents
+    and the tools. Raises :class:`UserError` if the durations have too many digits to be added up in ticks.
     """
     seconds = [Fraction(resources.durations[unit.motion].seconds) for unit in plan]
     ticks_per_second = lcm(*(duration.denominator for duration in seconds))
@@ -97,8 +97,9 @@ def schedule_task(
 def _uses(problem: Problem, replay: Replay, resources: ScheduleResources) -> tuple[Use, ...]:
     """Return the uses of tools in a plan.
 
-    A step belongs to an earlier use of a tool if it takes a copy that was made during that use; else it
-    begins a new use.
+    A step belongs to an earlier use of a tool if it takes a copy that was made during that use: of the tool
+    itself, or of something in it. Otherwise it begins a new use. If a step needs several copies of a tool,
+    it belongs to as many uses.
     """
     names: list[ToolName] = []
     steps: list[list[int]] = []
@@ -107,7 +108,9 @@ def _uses(problem: Problem, replay: Replay, resources: ScheduleResources) -> tup
     def assign(number: int, label: str, node: ObjectNode | None, copy: Copy | None) -> int:
         """Assign a step to the use that ``copy`` belongs to, or to a new use; return the position of the use.
 
-        ``label`` is the tool's label, and ``node`` its node before the step, if that is known.
+        If the step belongs to the use of ``copy`` already, it begins a new use. ``label`` is the tool's
+        label, and ``node`` its node before the step, if that is known. The name of a new use is the label,
+        unless ``node`` is in the kitchen; then it is the name under which ``node`` is counted.
         """
         use = None if copy is None else use_of.get((copy, label))
         if use is None or number in steps[use]:
@@ -122,22 +125,24 @@ def _uses(problem: Problem, replay: Replay, resources: ScheduleResources) -> tup
     for number, step in enumerate(replay.steps):
         copies = {copy.node: copy for copy in (*step.gone, *step.stayed)}
         for label, demand in tools_needed(problem, resources, step.unit).items():
-            after = {node: assign(number, label, node, copies.get(node)) for node in demand.kept}
-            changed = {
+            use_of_output = {node: assign(number, label, node, copies.get(node)) for node in demand.kept}
+            use_of_input = {
                 node: assign(number, label, node, None if node is None else copies.get(node))
                 for node in (*demand.changed, *demand.others)
             }
-            fallback = next(iter((changed or after).values()), None)
+            fallback = next(iter((use_of_input or use_of_output).values()), None)
             for output in demand.made:
-                if changed:
-                    after[output] = changed.pop(_most_similar(changed, output))
+                if use_of_input:
+                    use_of_output[output] = use_of_input.pop(_most_similar(use_of_input, output))
                 else:
-                    after[output] = assign(number, label, None, None)
-                use_of[Copy(output, number), label] = after[output]
+                    use_of_output[output] = assign(number, label, None, None)
+                use_of[Copy(output, number), label] = use_of_output[output]
             for copy in step.came:
                 if copy.node.label != label and copy.node.is_in(label):
-                    vessels = (use for node, use in after.items() if copy.node.label in node.ingredients)
-                    use = next(vessels, next(iter(after.values()), fallback))
+                    uses_with_copy = (
+                        use for node, use in use_of_output.items() if copy.node.label in node.ingredients
+                    )
+                    use = next(uses_with_copy, next(iter(use_of_output.values()), fallback))
                     if use is not None:
                         use_of[copy, label] = use
     return tuple(Use(name, tuple(positions)) for name, positions in zip(names, steps, strict=True))

@@ -39,9 +39,10 @@ class BestSchedule(NamedTuple):
 def shortest_schedule(task: ScheduleTask, deadline: Deadline) -> BestSchedule:
     """Return the schedule of least makespan; at a limit or ctrl-C, the best one found so far.
 
-    CP-SAT searches for it in another process. If there are too few tools for a schedule, the result says
-    which are lacking. At a limit before an order of the steps is known, the steps follow one after the other
-    as listed, if the tools allow it. Raises :class:`UserError` if OR-Tools is not installed.
+    A limit and ctrl-C are recorded in the deadline. CP-SAT searches in another process. If there are too few
+    tools for a schedule, the result says which are lacking. At a limit before an order of the steps is known,
+    the steps follow one after the other as listed, if the tools allow it. Raises :class:`UserError` if
+    OR-Tools is not installed.
     """
     if find_spec("ortools") is None:
         raise UserError(_NOT_INSTALLED)
@@ -117,7 +118,7 @@ def timed_steps(task: ScheduleTask, starts: Sequence[int]) -> list[TimedStep]:
     """Return the steps of a schedule with their agents and tools, and with times in seconds.
 
     Agents and tools are assigned so that the given starts, in ticks, are feasible. Then each step starts as
-    early as these assignments allow.
+    early as these assignments allow, perhaps earlier than given. A passive step has no agent.
     """
     ends = [start + length for start, length in zip(starts, task.lengths, strict=True)]
     active = [step for step, passive in enumerate(task.passive) if not passive]
@@ -132,7 +133,9 @@ def timed_steps(task: ScheduleTask, starts: Sequence[int]) -> list[TimedStep]:
         after[later].add(earlier)
     earliest: dict[int, int] = {}
     for step in sorted(range(len(starts)), key=lambda step: starts[step]):
-        earliest[step] = max((earliest[first] + task.lengths[first] for first in after[step]), default=0)
+        earliest[step] = max(
+            (earliest[earlier] + task.lengths[earlier] for earlier in after[step]), default=0
+        )
     return [
         TimedStep(
             earliest[step] * task.tick,
@@ -171,8 +174,9 @@ def _followers(
 ) -> Iterator[tuple[int, int]]:
     """Yield pairs of steps that share an agent, a tool or a copy: an earlier step and a later one.
 
-    Only steps and uses that follow each other directly are paired. The earlier step has to end before the
-    later one starts. ``spans`` are the start and end of each use.
+    The earlier step has to end before the later one starts. Of the steps of an agent, of a use or of a copy
+    of an item, each is paired with the next one. If two uses of a tool follow each other directly, every step
+    of the first use is paired with every step of the second. ``spans`` are the start and end of each use.
     """
     uses = task.uses
     steps_of_agent: dict[int, list[int]] = {}

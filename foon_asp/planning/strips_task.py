@@ -61,7 +61,9 @@ class StripsTask:
     def problem(self) -> Problem:
         """Return the task as a problem: facts are object nodes, actions units, the initial state the kitchen.
 
-        Actions without add effects are left out. Equal actions of the same name become one unit.
+        Actions without add effects are left out. Equal actions of the same name become one unit. Facts that
+        neither an action, the initial state nor the goal has are left out. The problem has prices unless
+        all actions cost 1.
         """
         nodes = [ObjectNode(fact) for fact in self.facts]
         builder = NetworkBuilder()

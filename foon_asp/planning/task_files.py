@@ -34,7 +34,10 @@ def read_task(files: Sequence[Path], deadline: Deadline) -> StripsTask:
 
 
 def read_pddl(domain: PddlOutline, problem: PddlOutline, deadline: Deadline) -> StripsTask:
-    """Return the delete relaxation of a planning task in PDDL; raises the errors of :func:`read_task`."""
+    """Return the delete relaxation of a planning task in PDDL; raises the errors of :func:`read_task`.
+
+    One more :class:`UserError` is that Fast Downward's translator is not installed.
+    """
     require_translator(f"{problem.file}: reading PDDL")
     with deadline.watched("reading the task"):
         require_task(domain, problem)
@@ -68,7 +71,8 @@ def _domain_and_problem(outlines: list[PddlOutline]) -> tuple[PddlOutline, PddlO
 def _domain_in_folder_of(problem: Path) -> PddlOutline:
     """Return the domain in the folder of a problem, under a file name usual in planning competitions.
 
-    Raises :class:`UserError` if no file of such a name is a domain.
+    The first such file that is a domain is returned. Raises :class:`UserError` if no file of such a name is a
+    domain.
     """
     number = "".join(filter(str.isdigit, problem.stem))
     names = [

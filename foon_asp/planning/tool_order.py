@@ -58,7 +58,8 @@ def tool_order(task: ScheduleTask, deadline: Deadline) -> ToolOrder:
 def _run(task: ScheduleTask, deadline: Deadline, may_lack: bool) -> Run:
     """Run clingo for an order of the uses of tools; return the run.
 
-    With ``may_lack``, clingo may add copies of tools, and minimizes their number.
+    With ``may_lack``, clingo may add copies of tools, and minimizes their number. Without it, clingo stops at
+    the first order.
     """
     kinds = {name: kind for kind, name in enumerate(task.counts)}
     uses = ((kinds[use.name], use.steps) for use in task.uses)
@@ -103,7 +104,7 @@ def first_schedule(task: ScheduleTask, order: tuple[int, ...]) -> tuple[int, ...
     """Return the starts of steps, in ticks, by list scheduling.
 
     The steps are placed in the given order, each as early as possible: when the steps that it waits for have
-    ended, and an agent and its tools are free.
+    ended, and its tools are free. A step that is not passive also waits for an agent.
     """
     starts, ends = [0] * len(order), [0] * len(order)
     agent_free = [0] * task.agents

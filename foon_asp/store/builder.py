@@ -86,7 +86,11 @@ class StoreBuilder:
         outputs: Iterable[ObjectNode],
         sources: Sequence[Source],
     ) -> int:
-        """Add one copy of a unit with its sources, at least one, and return the id of the unit."""
+        """Add one copy of a unit with its sources, at least one, and return the id of the unit.
+
+        A node that one side lists twice counts once. A copy of a unit that was added before only adds its
+        sources.
+        """
         # As in NetworkBuilder: inputs before outputs, a node that one side lists twice once.
         ins = list(dict.fromkeys(map(self._node_id, inputs)))
         outs = list(dict.fromkeys(map(self._node_id, outputs)))
@@ -147,9 +151,10 @@ class StoreBuilder:
         stated: Mapping[FunctionalUnit, Fraction],
         prices: UnitPriceList | None,
     ) -> None:
-        """Write the remaining rows, the indexes, the starting kitchen and the digests.
+        """Write the remaining rows, the indexes, the starting kitchen, the parameters and the digests.
 
-        Nothing can be added afterwards, as the ids are removed from memory.
+        Nothing can be added afterwards, as the ids are removed from memory. Prices of units that were not
+        added are left out; nodes of ``amounts`` that no unit has are added.
 
         Parameters:
             goals: The entries of the goals file, or the assumed goals.
@@ -278,7 +283,7 @@ class StoreBuilder:
         return matches
 
     def _read_node(self, node_id: int) -> ObjectNode:
-        """Read the node with an id from the database."""
+        """Read the node with an id from the database, to which its row must have been written."""
         label, *columns = self._database.execute(
             "SELECT name, states, relations, contents FROM node JOIN label ON label.id = label "
             "WHERE node.id = ?",

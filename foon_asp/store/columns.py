@@ -137,7 +137,10 @@ def encode_entry(entry: ListedObject) -> str:
 
 
 def decode_entry(text: str) -> ListedObject:
-    """Return the entry that :func:`encode_entry` encoded."""
+    """Return the entry that :func:`encode_entry` encoded.
+
+    Raises :class:`ValueError` or :class:`TypeError` for any other text.
+    """
     label, states, ingredients, container, relations, contents, file, line, column, amount = decode_json(text)
     pattern = NodePattern(
         _checked_name(label),

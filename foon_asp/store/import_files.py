@@ -49,10 +49,11 @@ class Imported(NamedTuple):
 def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Imported:
     """Read networks and the files beside them into a store, which replaces an older one at the end.
 
-    With ``lenient``, lines that are not understood are left out. Raises :class:`InputError` for input that is
-    not understood. Raises :class:`UserError` if one of the networks is a store, or if the store cannot be
-    written. It cannot be written if its name does not end in ``.foon``, if another process is writing it, or
-    if it would replace a file that is no store.
+    With ``lenient``, lines that are not understood are left out. Without a goals file, the store gets assumed
+    goals. Entries of the kitchen that match no node, and prices and amounts that fit no unit, are warnings.
+    Raises :class:`InputError` for input that is not understood. Raises :class:`UserError` if one of the
+    networks is a store, or if the store cannot be written. It cannot be written if its name does not end in
+    ``.foon``, if another process is writing it, or if it would replace a file that is no store.
     """
     if store.suffix != STORE_SUFFIX:
         raise UserError(f"{store}: the name of a store ends in {STORE_SUFFIX}")
@@ -129,9 +130,9 @@ def _assumed_goals(
 def _new_database(store: Path) -> Iterator[sqlite3.Connection]:
     """Yield a new database in one transaction; at a normal end it becomes the store.
 
-    It is committed, gets its digest appended, and replaces ``store``. After an error it is removed. The
-    database is a single file in the folder of the store. If this process is killed, a later import removes
-    the file. Raises :class:`UserError` if another import is writing the store.
+    It is committed, gets its digest appended, and replaces ``store``, whose permissions it gets. After an
+    error it is removed. The database is a single file in the folder of the store. If this process is killed,
+    a later import removes the file. Raises :class:`UserError` if another import is writing the store.
     """
     store = Path(os.path.realpath(store))  # a link stays one
     partial = store.with_name(f".{store.name}.partial")

@@ -21,7 +21,7 @@ def write_trigrams(database: sqlite3.Connection) -> None:
 
 
 def labels_beginning(database: sqlite3.Connection, start: str, max_labels: int) -> list[str]:
-    """Return at most ``max_labels`` labels that begin with ``start``, in alphabetical order."""
+    """Return at most ``max_labels`` labels that begin with ``start``, in order; capitals come first."""
     statement = "SELECT name FROM label WHERE name >= ? ORDER BY name LIMIT ?"
     labels = _decode_labels(database.execute(statement, (encode_label(start), max_labels)))
     return [label for label in labels if label.startswith(start)]
@@ -30,8 +30,8 @@ def labels_beginning(database: sqlite3.Connection, start: str, max_labels: int) 
 def similar_labels(database: sqlite3.Connection, label: str, max_labels: int) -> list[str]:
     """Return at most ``max_labels`` labels similar to ``label``, the most similar first.
 
-    Only labels that share rare trigrams with ``label`` are compared; without an index of trigrams, all labels
-    are.
+    Only labels that share rare trigrams with ``label`` are compared, at most
+    :attr:`.StoreTuning.compared_labels`. Without an index of trigrams, all labels are compared.
     """
     text = f" {_searchable(label).lower()} "
     trigrams = sorted({text[start : start + 3] for start in range(len(text) - 2)})

@@ -199,8 +199,8 @@ class Store:
     ) -> list[Unpriced]:
         """Return for each motion with unpriced units how many there are, and the source of the first.
 
-        Units that have one of ``motions`` or are among ``units`` count as priced. ``from_file`` says whether
-        prices of the imported file count as well.
+        Motions are in the order of their first unpriced units. Units that have one of ``motions`` or are
+        among ``units`` count as priced. ``from_file`` says whether prices of the imported file count as well.
         """
         unpriced_motions = [number for number, (name, _) in self._motions.items() if name not in motions]
         if not unpriced_motions:
@@ -303,7 +303,7 @@ class Store:
 
     @reporting_damage
     def beginning(self, start: str, max_labels: int) -> list[str]:
-        """Return at most ``max_labels`` labels that begin with ``start``, in alphabetical order."""
+        """Return at most ``max_labels`` labels that begin with ``start``, in order; capitals come first."""
         return self._checked_labels(labels_beginning(self._database, start, max_labels))
 
     @reporting_damage
@@ -345,7 +345,7 @@ class Store:
 
     @reporting_damage
     def sources_of(self, units: Iterable[int]) -> dict[int, tuple[Source, ...]]:
-        """Read the sources of units by their ids: a source for each copy of a unit."""
+        """Read the sources of units by their ids: a source for each copy of a unit, in the order imported."""
         rows = self.file.rows(f"{_SOURCE} WHERE unit IN ids ORDER BY unit, copy", units).fetchall()
         new = {origin for _, origin, _, _ in rows if origin not in self._origins}
         self._cache_origins(self.file.rows(f"{_ORIGIN} WHERE origin.id IN ids", new) if new else ())
@@ -393,7 +393,10 @@ class Store:
 
     @reporting_damage
     def unit_id(self, unit: FunctionalUnit) -> int | None:
-        """Return the id of a unit, or ``None`` if the network does not have it."""
+        """Return the id of a unit, or ``None`` if the network does not have it.
+
+        The order of inputs and of outputs does not count.
+        """
         inputs, outputs = ([self.object_id(node) for node in nodes] for nodes in (unit.inputs, unit.outputs))
         if None in inputs or None in outputs:
             return None

@@ -76,7 +76,10 @@ class StoreFile:
         return self.database.execute(statement.replace("IN ids", in_list), (json.dumps([*ids]),))
 
     def about(self, name: str) -> Any:
-        """Return the value with a name in the table ``about``, decoded from JSON."""
+        """Return the value with a name in the table ``about``, decoded from JSON.
+
+        Raises :class:`TypeError` if the table does not have the name.
+        """
         row = self.database.execute("SELECT value FROM about WHERE name = ?", (name,)).fetchone()
         return decode_json(row[0])
 

@@ -94,7 +94,7 @@ class UnitDistances:
 
         ``kinds``: masks of units; ``None`` if the tree may have any units.
         ``executed``: the ids of units that cost nothing; they are not returned.
-        ``max_cost``: the greatest cost of a tree.
+        ``max_cost``: the greatest cost of a tree. If every motion costs more, the list is empty.
         """
         if max_cost < int(self._costs.min(initial=FAR)):
             return []
