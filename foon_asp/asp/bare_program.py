@@ -89,8 +89,8 @@ def printable_program(
     problem: Problem, objectives: Sequence[Objective], settings: Settings, soft: Mapping[Constraint, int]
 ) -> BareProgram:
     """Return the program of :func:`bare_program`; under user rules or encodings, over the whole network."""
-    ruled = settings.constraints or settings.encodings or soft
-    return bare_program(problem.whole if ruled else problem, objectives, settings, soft)
+    has_rules = settings.constraints or settings.encodings or soft
+    return bare_program(problem.whole if has_rules else problem, objectives, settings, soft)
 
 
 def bare_plan_program(

@@ -185,8 +185,8 @@ class _Solver:
     def _solve(self) -> Outcome:
         """Return the outcome of the reductions or, if they leave the question open, of a search with clingo.
 
-        A limit during a run of clingo leads to an outcome without a proof. Any other limit raises
-        ``KeyboardInterrupt``.
+        If there is no tree, user rules are still checked for errors, which are raised. A limit during a run
+        of clingo leads to an outcome without a proof. Any other limit raises ``KeyboardInterrupt``.
         """
         prepared = self.prepared
         if prepared.stopped:
@@ -451,7 +451,7 @@ class _Solver:
     def _search(self, incumbent: Units) -> Outcome:
         """Search for a tree better than the incumbent, and return the outcome.
 
-        If no better tree exists, the incumbent is optimal.
+        If no better tree exists, the incumbent is optimal. At a limit, the outcome has the best tree found.
         """
         opt_mode, strict = self._opt_mode(incumbent)
         run = self._run(self.levels, opt_mode=opt_mode, bounds=True)
@@ -465,8 +465,8 @@ class _Solver:
     def _conclude(self, run: "Run", units: Units) -> Outcome:
         """Return the outcome of a run that found the tree ``units``.
 
-        If clingo rounded costs, exact costs decide, except with replaced encodings that measure something
-        else.
+        A run that a limit stopped leads to an outcome without a proof. If clingo rounded costs, exact costs
+        decide, except with replaced encodings that measure something else.
         """
         best, proved = self._best_reported(units), run.exhausted
         if self._measures_agree(units, run.cost, self.levels) and proved:
@@ -846,7 +846,10 @@ def _cut_objects(reduced: Reduced | None) -> list[frozenset[int]]:
 
 
 def _first_cut_objects(cuts: Cuts | None) -> list[frozenset[int]]:
-    """Return the objects of each cut, for the first cuts: up to about ``SEARCH.cut_objects`` in all."""
+    """Return the objects of each cut, for the first cuts: up to about ``SEARCH.cut_objects`` objects in all.
+
+    The list is empty for ``None``.
+    """
     object_sets, total = list[frozenset[int]](), 0
     for cut in cuts.cuts if cuts else ():
         if total > SEARCH.cut_objects:

@@ -216,7 +216,10 @@ class _UnionSearch:
         return figure > limit if multiplies(levels[0]) else figure < limit
 
     def _irredundant_subtree(self, tree: Sequence[int]) -> frozenset[int]:
-        """Return the unit ids of an irredundant subtree of a tree."""
+        """Return the unit ids of an irredundant subtree of a tree, which is in executable order.
+
+        From the last unit to the first, each unit without which the rest still makes the goals is dropped.
+        """
         problem, kept = self._prepared.problem, set(tree)
         for unit in reversed(tree):
             restriction = Restriction(lambda other, kept=kept, unit=unit: other == unit or other not in kept)  # type: ignore[misc]

@@ -31,8 +31,9 @@ class CostScale(NamedTuple):
 def cost_scale(costs: Iterable[Fraction]) -> CostScale:
     """Return the scale of the costs of units; ``costs`` has one for each unit.
 
-    If the least common denominator turns all costs into integers of 32 bits, it is the scale. Otherwise,
-    weights are rounded down, and the scale is the greatest by which they fit into 32 bits, but at most 10^8.
+    If the least common denominator turns all costs into integers of 32 bits, it is the scale, and weights are
+    exact. Otherwise, weights are rounded down, and the scale is the greatest by which they fit into 32 bits,
+    but at most 10^8. The sum of all weights may exceed 32 bits.
     """
     costs = list(costs)
     distinct_costs = sorted(set(costs))

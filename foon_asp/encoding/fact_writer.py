@@ -1,5 +1,7 @@
 """Writer of facts for clingo, as text.
 
+A number that does not fit into 32 bits raises :class:`UserError`.
+
 If totals by a rounded objective are compared exactly, some facts are about products of rates. Product number
 K is the exact total of a known tree, as a vector (:meth:`foon_asp.encoding.cost_scales.Scales.vector`). For
 success, it has the exponents of the product of the tree's rates. For other objectives, the same predicates
@@ -471,7 +473,7 @@ def write_below(below: Iterable[Mapping[Objective, int | Fraction]], scales: Sca
     """Return facts ``_at_most(K,Objective,N)``: a tree has to undercut at least one cost of each set K.
 
     ``below`` are the sets, costs by objective; K is their index. Raises :class:`UserError` for an objective
-    that is rounded.
+    that is rounded, or by which all units together weigh more than 32 bits.
     """
     return "".join(
         write_at_most(number, {o: scales.cost_weight(o, cost) - 1 for o, cost in costs.items()})
@@ -616,7 +618,7 @@ def write_tool_order(
 
 
 def quote(text: str) -> str:
-    """Return a text as a string of clingo, in quotes.
+    """Return a text as a string of clingo, in quotes; backslashes, quotes and line ends are escaped.
 
     Raises :class:`UserError` for a text with a zero character or half a character (a surrogate).
     """

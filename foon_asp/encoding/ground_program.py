@@ -165,7 +165,7 @@ def _wait(handle: SolveHandle, deadline: Deadline) -> None:
 
 
 def _used_units(model: Model) -> frozenset[int]:
-    """Return the numbers of the units in use in an answer.
+    """Return the numbers of the units in use in an answer, as far as ``use/1`` is shown.
 
     Raises :class:`UserError` if an argument of ``use/1`` is no number.
     """

@@ -208,7 +208,7 @@ def unknown_text_message(facts: Sequence[str], word: str, meant: str | None) -> 
 def nearest_text(facts: Sequence[str], word: str, values: FactValues) -> str | None:
     """Return the text most similar to a word in facts of the predicates ``facts``.
 
-    Return ``None`` if no text is similar.
+    Return ``None`` if no text is similar, or if :meth:`FactValues.nearest` was called too often.
     """
     nearest = [values.nearest(fact, COLUMNS[fact, 2], {1: word}) for fact in facts]
     best = near_labels(word, sorted({match[1] for match in nearest if match is not None}), 1)

@@ -204,10 +204,10 @@ class Analysis:
                 }
                 misfit = position_of_wrong_type(COLUMNS[conjunct.signature], values)
                 if misfit is not None:
-                    texts = misfit in COLUMNS[conjunct.signature].texts
+                    wants_text = misfit in COLUMNS[conjunct.signature].texts
                     kind = (
                         f"{conjunct.arguments[misfit]} is no text in quotes"
-                        if texts
+                        if wants_text
                         else f"{conjunct.arguments[misfit]} is no number"
                     )
                     return f"{conjunct.text} never holds, since {kind}"

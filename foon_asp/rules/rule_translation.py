@@ -363,7 +363,7 @@ class Translator:
     def _count_units_read_by_atom(self, signature: Signature) -> int:
         """Return on how many units of the tree an atom depends; 2 stands for more than one.
 
-        The result is cached by predicate.
+        It is 2 for a recursive predicate that depends on the tree. The result is cached by predicate.
         """
         if signature in {USE, AVAILABLE}:
             return 1
@@ -379,7 +379,10 @@ class Translator:
         return self._units_read_by_predicate[signature]
 
     def _requires_unit(self, body: Iterable[Conjunct]) -> bool:
-        """Whether a conjunction about one unit is false in the world without units."""
+        """Whether a conjunction about one unit is false in the world without units.
+
+        An atom ``available(O)`` may be true there, since O may be in the kitchen.
+        """
         return any(
             isinstance(conjunct, Literal)
             and (
@@ -401,7 +404,8 @@ class Translator:
     ) -> bool:
         """Whether a body, and the rules that derive what it reads, calculate nothing.
 
-        ``above`` has the predicates whose rules are being checked.
+        Aggregates other than counts, predicates with a minus and conjuncts of unknown kind count as
+        calculations. ``above`` has the predicates whose rules are being checked.
         """
         conjuncts = tuple(body)
         terms = [term for conjunct in conjuncts for term in _terms_of(conjunct)]

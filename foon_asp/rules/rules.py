@@ -183,8 +183,8 @@ class Rules:
     def limits(self, problem: Problem, deadline: Deadline) -> list[LinearRow]:
         """Return the linear limits on executions that rules state, over the units that can execute.
 
-        The result is empty if clingo refuses a rule. A limit per unit becomes one row for each unit. Raises
-        :class:`UserError` as :meth:`restriction_of` does.
+        The result is empty if clingo refuses a rule. A limit per unit becomes one row for each unit. Units of
+        weight 0 are left out. Raises :class:`UserError` as :meth:`restriction_of` does.
         """
         answers = self._answers(problem, deadline) if self._analysis.rows else None
         limits: list[LinearRow] = []
