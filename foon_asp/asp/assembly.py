@@ -167,8 +167,8 @@ def ready_made_program(problem: Problem, settings: Settings, warn: Callable[[str
 
     Returns ``None`` without user rules, if there are other rules, rewritten rules, bounds or other encodings,
     and without reductions. Also returns ``None`` if items are used up, or if the rules mean something else
-    for clingo in this problem. The last reason is a large network, unless it is a part of a store or the
-    rules require units.
+    for clingo in this problem. In a large network, it is ``None`` unless the network is a part of a store or
+    the rules require units.
     """
     rules = _ready_made_rules(settings)
     if rules is None or problem.items is not None:
@@ -202,8 +202,8 @@ def _warn_of_names(
 ) -> None:
     """Warn of names in rules, measures and parameters that the network of a problem does not have.
 
-    Parameters are the constants of ready-made constraints. ``added`` are the encodings of all constraints.
-    Without a problem, nothing is checked.
+    Parameters are the constants of ready-made constraints. ``added`` are the encodings of all constraints,
+    and ``constants`` the constants that are set, as ``NAME=VALUE``. Without a problem, nothing is checked.
     """
     if problem is None:
         return

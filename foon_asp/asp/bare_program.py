@@ -129,7 +129,7 @@ def _require_no_amounts(problem: Problem) -> None:
 def _bare_program_of(program: Program, facts: str) -> BareProgram:
     """Return a program for bare clingo: the files of ``program``, these facts, and its rules as text.
 
-    Rules that check for overflow of numbers are left out.
+    Options of clingo, and rules that check for overflow of numbers, are left out.
     """
     files = tuple(file for file in program.files if isinstance(file, Path))
     rules = (

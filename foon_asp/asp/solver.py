@@ -185,8 +185,9 @@ class _Solver:
     def _solve(self) -> Outcome:
         """Return the outcome of the reductions or, if they leave the question open, of a search with clingo.
 
-        If there is no tree, user rules are still checked for errors, which are raised. A limit during a run
-        of clingo leads to an outcome without a proof. Any other limit raises ``KeyboardInterrupt``.
+        If the preparation was stopped, the outcome is unknown. If there is no tree, user rules are still
+        checked for errors, which are raised. A limit during a run of clingo leads to an outcome without a
+        proof. Any other limit raises ``KeyboardInterrupt``.
         """
         prepared = self.prepared
         if prepared.stopped:

@@ -209,7 +209,7 @@ class Scales:
         return figure <= bound if multiplies(objective) else figure >= bound
 
     def _rounds(self, objective: Objective) -> bool:
-        """Whether weights by an objective are rounded down; by success, they are unless all rates are 1."""
+        """Whether weights by an objective are rounded down; by success, they are if some rate is below 1."""
         if multiplies(objective):
             # a weight of 0 may be a rate below 1
             return self.rates is not None and any(rate != 1 for rate in self.rates.weights)

@@ -308,8 +308,8 @@ def check_encodings(
 ) -> list[Diagnostic]:
     """Check the user's rules: constraints in ``added``, and files in ``base`` that replace built-in ones.
 
-    ``added`` may have ready-made constraints, too, and ``base`` built-in files; errors in these are not
-    looked for. ``others`` are further built-in files that are loaded.
+    Ready-made constraints among ``added``, and built-in files among ``base``, are not searched for errors.
+    ``others`` are further built-in files that are loaded.
 
     Return two kinds of warnings. One is for a predicate in a body of ``added`` that nothing defines, and
     suggests the most similar one. The other is for a term in the user's constraints that is compared with

@@ -91,7 +91,8 @@ def write_facts(
 
     ``scales`` have the weights of ``risk/2`` and ``cost/3``; without scales, ``rate/2``, ``risk/2`` and
     ``cost/3`` are omitted. ``looked_at`` are the predicates that user rules read; ``None`` if there are no
-    user rules. If there are, facts about sources, videos and prices of units are added.
+    user rules. If there are, facts about sources, videos and prices of units are added; prices only if all
+    are whole numbers of hundredths.
 
     Raises :class:`UserError` if user rules read prices and a price is no whole number of hundredths. Also
     raises it for numbers and names that clingo cannot take.

@@ -187,7 +187,8 @@ class FactValues:
     def _may_have_fact_outside_memory(self, name: str, wanted: Mapping[int, Value]) -> bool:
         """Whether the part of a store that is not in memory may have a fact with the ``wanted`` texts.
 
-        It may if that part is unknown, or too large to be read to the end; all motions and utensils are read.
+        It may if that part is unknown, or too large to be read to the end. Motions and utensils are always
+        read to the end.
         """
         network = self._whole_network
         if network is None or self._has_fact(name, wanted, network):

@@ -353,7 +353,7 @@ class _AnonymousVariableNamer(Transformer):
         self._in_term = False
 
     def visit_BinaryOperation(self, term: AST) -> AST:  # noqa: N802 (the name clingo looks for)
-        """Rename each ``_`` within an operation."""
+        """Return an operation in which each ``_`` has a new name."""
         before, self._in_term = self._in_term, True
         changed = term.update(**self.visit_children(term))
         self._in_term = before

@@ -155,7 +155,8 @@ class Analysis:
     def kind(self, clause: Clause) -> tuple[Kind, Doubt | None]:
         """Return the kind of a clause, and the reason if the kind is ``OTHER``.
 
-        The reason is ``None`` for any other kind.
+        The reason is ``None`` for any other kind. A plain rule with a head is a ``HELPER``, unless its
+        predicate is derived from itself through ``not``, an aggregate, a condition or a choice.
         """
         dependence = self.dependence
         doubt: Doubt | None
@@ -188,7 +189,11 @@ class Analysis:
         )
 
     def _why_never(self, body: Iterable[Conjunct]) -> str | None:
-        """Return why a body cannot hold, whatever the facts are; ``None`` if it may hold."""
+        """Return why a body cannot hold, whatever the facts are; ``None`` if no reason is found.
+
+        A reason is a comparison or aggregate that is known to be false, or an argument of the wrong type in a
+        fact: a number where the facts have a text, for example.
+        """
         for conjunct in body:
             if isinstance(conjunct, Test | Aggregate) and conjunct.holds is False:
                 return _NEVER

@@ -461,7 +461,10 @@ def _has_unknown_part(conjunct: Conjunct) -> bool:
 
 
 def _comparison(test: Test) -> tuple[AST, int, AST] | None:
-    """Return the left term, operator and right term of a comparison; ``None`` for any other test."""
+    """Return the left term, operator and right term of a comparison.
+
+    Return ``None`` for a comparison with ``not``, a chain of comparisons and any other test.
+    """
     atom = test.ast.atom
     if test.ast.sign or atom.ast_type != ASTType.Comparison or len(atom.guards) != 1:
         return None

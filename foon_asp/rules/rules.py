@@ -219,7 +219,8 @@ class Rules:
     def leave_to_search(self, problem: Problem) -> bool:
         """Whether to leave the rules to the search: in a large network, if they require no unit.
 
-        There, the search evaluates the rules faster, since it looks only at units near the goals.
+        A network is large if it has more than ``TUNING.evaluated_units`` units. There, the search evaluates
+        the rules faster, since it looks only at units near the goals.
         """
         large = len(problem.network) > TUNING.evaluated_units
         return large and not self._analysis.at_least_ones
