@@ -83,8 +83,8 @@ class Prepared:
         """The facts of the problem, as text, without the facts about objectives.
 
         If user rules were applied before the search, only facts that some rule reads are written. Bounds on
-        costs are included and, if clingo has to enforce them, the sets of units that rules require. Raises
-        ``KeyboardInterrupt`` at a limit.
+        costs are included. The sets of units that rules require are included if clingo does not get the rules
+        themselves. Raises ``KeyboardInterrupt`` at a limit.
         """
         from foon_asp.encoding import fact_writer as writing  # noqa: PLC0415
 
@@ -270,16 +270,18 @@ def _apply_rules(prepared: Prepared, rules: "Rules | ReadyMade") -> Prepared:
     if rules.unsettled and not rules.local:
         return prepared
     problem = prepared.problem
-    unrestricted = replace(prepared, full_program=prepared.program)
+    with_full_program = replace(prepared, full_program=prepared.program)
     if rules.leave_to_search(problem):
-        return replace(unrestricted, restricted_problem=problem, unsettled=True, redundant=rules.redundant)
+        return replace(
+            with_full_program, restricted_problem=problem, unsettled=True, redundant=rules.redundant
+        )
     restriction = rules.restriction_of(problem, prepared.deadline)
     if restriction is None:
         return prepared
     if isinstance(restriction, Contradiction):
-        return replace(unrestricted, contradicted=True)
+        return replace(with_full_program, contradicted=True)
     restricted_problem = replace(problem, restriction=restriction)
-    restricted = replace(unrestricted, restricted_problem=restricted_problem)
+    restricted = replace(with_full_program, restricted_problem=restricted_problem)
     if not rules.unsettled:
         return replace(restricted, program=prepared.program.settled)
     return replace(restricted, unsettled=True, redundant=rules.redundant)

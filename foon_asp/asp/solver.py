@@ -576,7 +576,8 @@ class _Solver:
         """Return the ground program for the parameters of :meth:`_run`.
 
         The last program is kept. It is returned again for the same parameters; of ``products``, only their
-        number is compared.
+        number is compared. For other parameters, it is closed. The times of writing facts and of grounding
+        are added to ``seconds``.
         """
         question = objectives, len(products), wanted, fewer
         if self._ground:
@@ -637,8 +638,8 @@ class _Solver:
         """Find the best tree by exact costs where clingo compares rounded ones (docs/dev/exact-success.md).
 
         ``best`` is the best tree by rounded costs. Every total that rounding may have hidden is examined. No
-        tree has fewer units than ``fewest``. Returns the best tree, and whether it is proved best. If no
-        costs are rounded, this is ``best``, proved.
+        tree has fewer units than ``fewest``. Returns the best tree found, and whether it is proved best; at a
+        limit, it is not. If no costs are rounded, ``best`` is returned as proved.
         """
         scales = self._current_scales()
         if scales.rounded not in self.levels:  # a kept program has other levels, too
@@ -762,19 +763,19 @@ class _Solver:
         reduced = self.prepared.reduced
         if reduced is None or reduced.costs is None:
             return bounds
-        objective_first, proved = self.levels[0], reduced.costs.first_objective_bound(reduced.bound)
-        if multiplies(objective_first):
-            return {objective_first: min(bounds[objective_first], proved)}
+        first_objective, proved = self.levels[0], reduced.costs.first_objective_bound(reduced.bound)
+        if multiplies(first_objective):
+            return {first_objective: min(bounds[first_objective], proved)}
         assert self.listener.incumbent is not None
         _, best = self.listener.incumbent
-        bounds[objective_first] = max(bounds[objective_first], proved)
+        bounds[first_objective] = max(bounds[first_objective], proved)
         for objective, bound in bounds.items():
             if not multiplies(objective):
                 bounds[objective] = min(bound, best.measure(objective))
         return (
             bounds
-            if bounds[objective_first] == best.measure(objective_first)
-            else {objective_first: bounds[objective_first]}
+            if bounds[first_objective] == best.measure(first_objective)
+            else {first_objective: bounds[first_objective]}
         )
 
     def _report_bound(self, lower: Sequence[int]) -> None:

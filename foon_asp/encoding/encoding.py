@@ -357,8 +357,9 @@ def check_encodings(
 def non_numeric_terms(statements: Iterable[AST], constants: Collection[str]) -> Iterator[tuple[AST, str]]:
     """Yield the terms that are compared with numbers but are no numbers, each with a message.
 
-    Such a term is above every number. It is a name that is not in ``constants``, the names that ``#const``
-    statements set. Or it is a text as guard of a count or sum. Comparisons with ``=`` and ``!=`` are allowed.
+    Such a term is above every number. There are two kinds: a name that is not in ``constants``, which are the
+    names that ``#const`` statements set, and a text as guard of a count or sum. In comparisons with ``=`` and
+    ``!=`` alone, terms are not looked at.
     """
     for node in (node for statement in statements for node in nodes(statement)):
         terms: list[AST] = []

@@ -121,8 +121,9 @@ def write_facts_read(
     """Return the facts of :func:`write_facts` that have the predicates in ``read``.
 
     The facts ``utensil/1``, ``goal/1`` and ``available/1`` are always included. Without ``scales``,
-    ``risk/2`` and ``cost/3`` are omitted, but not ``rate/2``. Raises :class:`UserError` if prices are read
-    and a price is no whole number of hundredths, and for numbers and names that clingo cannot take.
+    ``risk/2`` and ``cost/3`` are omitted, but not ``rate/2``. The fact ``stock/2`` is never written. Raises
+    :class:`UserError` if prices are read and a price is no whole number of hundredths, and for numbers and
+    names that clingo cannot take.
     """
     problem_seen = problem.as_seen or problem
     object_number = problem.network.object_number

@@ -105,7 +105,7 @@ def problem_scale(problem: Problem, units: Iterable[int]) -> RateScale:
 
 
 def _minus_log(rate: Fraction, digits: int) -> Decimal:
-    """Return ``-ln`` of a rate with ``digits`` digits: the relative error is below 10^-digits."""
+    """Return ``-ln`` of a rate in (0, 1] with ``digits`` digits: the relative error is below 10^-digits."""
     failure_rate = 1 - rate
     zeros = -_CONTEXT.divide(Decimal(failure_rate.numerator), Decimal(failure_rate.denominator)).adjusted()
     # The logarithm of 1 + x has as many digits fewer than 1 + x as x begins with zeros.

@@ -262,7 +262,9 @@ class Analysis:
         """Return a rule with the kind that follows from its translations.
 
         The translations are added to ``removals``, ``at_least_ones`` and ``rows``, under the index of the
-        rule (``number``). A rule that is not local, a ``HELPER`` and an ``OTHER`` rule have none.
+        rule (``number``). A rule that is not local, a ``HELPER`` and an ``OTHER`` rule have none. With a
+        removal, a rule becomes ``DELETING``, unless it is a ``FACT``. With at-least-one constraints, its
+        ``one_of`` is set.
         """
         live_clauses = self.clauses_of_rule[number]
         if not rule.local or rule.kind in {Kind.HELPER, Kind.OTHER}:

@@ -269,9 +269,9 @@ class Translator:
             return None
         body = [f"unit({unit})", *(str(node) for n, node in enumerate(condition) if n != position)]
         weight = factor_texts[0] if factor_texts else "1"
-        signature = element.condition[position]
-        assert isinstance(signature, Literal)
-        return f"{self._answer_head('weighs', weight, unit)} :- {'; '.join(body)}.", signature.signature
+        execution = element.condition[position]
+        assert isinstance(execution, Literal)
+        return f"{self._answer_head('weighs', weight, unit)} :- {'; '.join(body)}.", execution.signature
 
     def _remaining_bound(self, comparison: int, term: AST) -> tuple[bool, int] | None:
         """Return the bound that remains if a comparison is forbidden: whether it is lower, and its number.

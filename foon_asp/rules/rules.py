@@ -230,7 +230,7 @@ class Rules:
     ) -> UnitAnswers | None:
         """Return the evaluation of the rules on single units; ``None`` where clingo refuses a rule.
 
-        The result for the last problem and units is cached.
+        A restriction of the problem is ignored. The result for the last problem and units is cached.
         """
         analysis = self._analysis
         if self._last is None or self._last[0] is not problem or self._last[1] is not units:
