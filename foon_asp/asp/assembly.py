@@ -60,6 +60,10 @@ def assemble(
     ``problem``, also about names in rules that its network does not have. If grounding user rules may not
     terminate, a worker process is started in advance.
 
+    A folder that replaces the built-in encodings may lack files; the built-in ones are loaded in their place.
+    A constraint that is passed twice is loaded once. Relaxed constraints are checked, but only their
+    rewritten rules are loaded.
+
     Raises :class:`UserError` for files that are missing or at fault, for ``#script``, for constants that no
     encoding has, and for clingo options that would change what an answer means.
     """
@@ -159,10 +163,12 @@ def ready_made_program(problem: Problem, settings: Settings, warn: Callable[[str
     """Return the program of a question whose user rules are all ready-made constraints, without clingo.
 
     Ready-made constraints come with this program, so their effect is computed without their text: ``files``
-    are without them, and ``ready_made`` has them. ``warn`` receives warnings about their parameters. Returns
-    ``None`` if there are other rules, if items are used up, or if the rules mean something else for clingo in
-    this problem. Also returns ``None`` for a large network, unless it is a part of a store or the rules
-    require units.
+    are without them, and ``ready_made`` has them. ``warn`` receives warnings about their parameters.
+
+    Returns ``None`` without user rules, if there are other rules, rewritten rules, bounds or other encodings,
+    and without reductions. Also returns ``None`` if items are used up, or if the rules mean something else
+    for clingo in this problem. In a large network, it is ``None`` unless the network is a part of a store or
+    the rules require units.
     """
     rules = _ready_made_rules(settings)
     if rules is None or problem.items is not None:
@@ -196,8 +202,8 @@ def _warn_of_names(
 ) -> None:
     """Warn of names in rules, measures and parameters that the network of a problem does not have.
 
-    Parameters are the constants of ready-made constraints. ``added`` are the encodings of all constraints.
-    Without a problem, nothing is checked.
+    Parameters are the constants of ready-made constraints. ``added`` are the encodings of all constraints,
+    and ``constants`` the constants that are set, as ``NAME=VALUE``. Without a problem, nothing is checked.
     """
     if problem is None:
         return
@@ -225,7 +231,7 @@ def _warn_of_names(
 
 
 def _is_built_in(encoding: "Encoding") -> bool:
-    """Whether an encoding is an unchanged file of this program."""
+    """Whether an encoding is an unchanged file of this program, or such a file with constants set."""
     rules = encoding.rules
     file = rules.file if isinstance(rules, Stated) else rules
     return file is not None and is_own(file)
@@ -234,8 +240,8 @@ def _is_built_in(encoding: "Encoding") -> bool:
 def _ready_made_rules(settings: Settings) -> "ReadyMade | None":
     """Return the user rules if all are ready-made constraints, else ``None``.
 
-    Without reductions, with other encodings, and with rewritten constraints or bounds, return ``None`` as
-    well.
+    Return ``None`` also without rules, without reductions, with other encodings, and with rewritten
+    constraints or bounds.
     """
     if not settings.constraints or not settings.reductions or settings.replaced is not None:
         return None
@@ -262,7 +268,7 @@ def _optional_predicates(encodings: "Sequence[Encoding]") -> frozenset[tuple[str
 def _overflow_checks(encodings: "Sequence[Encoding]") -> list[Stated]:
     """Return rules that detect numbers beyond clingo's integers in user encodings.
 
-    The list is empty if there is nothing to check.
+    The list has one text with all rules, or is empty if there is nothing to check.
     """
     if not encodings:
         return []
@@ -274,8 +280,9 @@ def _overflow_checks(encodings: "Sequence[Encoding]") -> list[Stated]:
 
 
 def _analysed_rules(settings: Settings) -> "Rules | None":
-    """Return the user rules, analysed; ``None`` for none, with other encodings, and if rules are rewritten.
+    """Return the user rules, analysed.
 
+    Return ``None`` without rules, with other encodings, and if rules are rewritten. Warnings are dropped.
     Raises as :func:`assemble` does.
     """
     return assemble(settings, lambda _: None).understood
@@ -298,8 +305,8 @@ class ReachOfRules(Enum):
 def reach_of_rules(settings: Settings) -> ReachOfRules:
     """Return which units the user rules can depend on or require.
 
-    Rules that are not local, or that cannot be analysed, can depend on all units. Raises as :func:`assemble`
-    does.
+    Rules that are not local, or that cannot be analysed, can depend on all units. The result is ``ALL`` also
+    without rules. Raises as :func:`assemble` does.
     """
     rules = _ready_made_rules(settings) or _analysed_rules(settings)
     if rules is None or not rules.local:
@@ -311,8 +318,9 @@ def hold_for_subtrees(settings: Settings) -> bool:
     """Whether the user rules are antimonotone: if a tree keeps to them, each of its subtrees does, too.
 
     This has to be so in every part of the network, and also if more object nodes are available than the
-    kitchen has. It is true without rules, and false with replaced encodings, with rewritten rules, and for
-    rules that are not local. Raises as :func:`assemble` does.
+    kitchen has. It is true without rules, and false with replaced encodings, for rules that are not local,
+    and for rules beside rewritten ones. Rewritten rules alone are not looked at. Raises as :func:`assemble`
+    does.
     """
     if settings.replaced is not None:
         return False
@@ -325,7 +333,8 @@ def hold_for_subtrees(settings: Settings) -> bool:
 def need_clingo(settings: Settings) -> bool:
     """Whether clingo has to enforce user rules, since they do more than remove and require units.
 
-    Raises as :func:`assemble` does.
+    Return ``False`` without rules, and for rules that are not analysed: rewritten ones, and those beside
+    replaced encodings. Raises as :func:`assemble` does.
     """
     rules = _ready_made_rules(settings) or _analysed_rules(settings)
     return rules is not None and bool(rules.unsettled)
@@ -357,9 +366,10 @@ def need_whole_network(problem: Problem, settings: Settings) -> bool:
 def rules_digest(
     settings: Settings, warn: Callable[[str], None] = lambda _: None, problem: Problem | None = None
 ) -> dict[str, str]:
-    """Return ``{"rules": DIGEST}`` with a digest of the user rules and encodings; empty without any.
+    """Return ``{"rules": DIGEST}`` with a digest of the user rules, constants and encodings.
 
-    Every row of results has the digest. Warns and raises as :func:`assemble` does.
+    The result is empty without any of them. The digest has 16 hexadecimal digits. Every row of results has
+    it. Warns and raises as :func:`assemble` does.
     """
     if not (settings.constraints or settings.constants or settings.encodings):
         return {}
@@ -392,8 +402,8 @@ def _is_ready_made(constraint: Constraint) -> bool:
 def _clingo_options(options: tuple[str, ...]) -> tuple[str, ...]:
     """Return clingo's options: the defaults that the user did not set, then the user's ``options``.
 
-    Raises :class:`UserError` for a word that is no option, and for an option that would change what an answer
-    means.
+    Raises :class:`UserError` for a word that is no option, and for an option, perhaps abbreviated, that would
+    change what an answer means.
     """
     names = [option.partition("=")[0] for option in options]
     for option, name in zip(options, names, strict=True):

@@ -89,8 +89,8 @@ def printable_program(
     problem: Problem, objectives: Sequence[Objective], settings: Settings, soft: Mapping[Constraint, int]
 ) -> BareProgram:
     """Return the program of :func:`bare_program`; under user rules or encodings, over the whole network."""
-    ruled = settings.constraints or settings.encodings or soft
-    return bare_program(problem.whole if ruled else problem, objectives, settings, soft)
+    has_rules = settings.constraints or settings.encodings or soft
+    return bare_program(problem.whole if has_rules else problem, objectives, settings, soft)
 
 
 def bare_plan_program(
@@ -129,7 +129,7 @@ def _require_no_amounts(problem: Problem) -> None:
 def _bare_program_of(program: Program, facts: str) -> BareProgram:
     """Return a program for bare clingo: the files of ``program``, these facts, and its rules as text.
 
-    Rules that check for overflow of numbers are left out.
+    Options of clingo, and rules that check for overflow of numbers, are left out.
     """
     files = tuple(file for file in program.files if isinstance(file, Path))
     rules = (

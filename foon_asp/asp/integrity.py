@@ -64,8 +64,9 @@ def relax(
 
     ``before`` are other constraints of the question, which are not rewritten. In messages, the numbers of
     their texts precede those of ``constraints``. Each constraint is first parsed and grounded without facts,
-    so that its errors are raised with their places. Raises as
-    :func:`foon_asp.encoding.encoding.read_encoding` does.
+    so that its errors are raised with their places. At a limit or ctrl-C, the grounding is skipped and
+    nothing is raised; the deadline records it. Raises as :func:`foon_asp.encoding.encoding.read_encoding`
+    does.
     """
     numbered: list[IntegrityConstraint] = []
     rules: dict[str, Source] = {}
@@ -108,7 +109,7 @@ def _statements(rules: Loaded) -> list[AST]:
 def errors_at_sources(relaxed: Relaxed, text: str) -> Iterator[None]:
     """Return a context in which errors in the rewritten rules are raised with places in the user's files.
 
-    ``text`` is the text given to clingo, which has the rules.
+    ``text`` is the text given to clingo, which has the rules. Places elsewhere are kept.
     """
     try:
         yield
@@ -131,7 +132,8 @@ def errors_at_sources(relaxed: Relaxed, text: str) -> Iterator[None]:
 def _check_alone(rules: Loaded, deadline: Deadline) -> None:
     """Parse and ground one constraint without facts, to raise its errors with their places.
 
-    Later it is a part of a rewritten text, in which errors have no place. At a limit, the check ends early.
+    Later it is a part of a rewritten text, in which errors have no place. At a limit or ctrl-C, the grounding
+    ends early. Then nothing is raised, and the deadline records the interrupt.
     """
     read_encoding(rules)
     try:  # without facts, for unsafe variables alone
@@ -154,7 +156,11 @@ def _rule_unless_dropped(rule: AST, number: int) -> str:
 
 
 def _rule_for_broken(rule: AST, number: int) -> str:
-    """Return the text of a rule with the head ``_broken(number,Way)``; ``Way`` has its global variables."""
+    """Return the text of a rule with the head ``_broken(number,Way)``.
+
+    ``Way`` has the global variables of the body in alphabetical order, as in ``_way(O,U)``. Without
+    variables, it is ``_way``.
+    """
     way = ",".join(sorted(set(_global_variables(rule.body))))
     head = (
         _parse_statement(f"_broken({number},_way({way})).")
@@ -189,7 +195,7 @@ def _global_variables(body: Sequence[AST]) -> Iterator[str]:
 
 
 def _possible_constants(statement: AST) -> Iterator[str]:
-    """Yield the names in the terms of a statement that may be constants."""
+    """Yield the names in the terms of a statement that may be constants, with repeats."""
     for node in nodes(statement):
         if node.ast_type == ASTType.SymbolicTerm and node.symbol.type is SymbolType.Function:
             yield node.symbol.name

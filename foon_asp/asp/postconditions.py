@@ -195,7 +195,10 @@ class Postconditions:
             )
 
     def _require_agreement(self, outcome: Outcome, costs: Costs, reduced: Reduced, exact: ExactCosts) -> None:
-        """Require that reductions and outcome agree on the costs, and that the bound allows the tree."""
+        """Require that reductions and outcome agree on the costs, and that the bound allows the tree.
+
+        If the outcome is proved by cuts, its tree has to be that of the reductions, and cost what they prove.
+        """
         assert outcome.units is not None
         units = frozenset(outcome.units)
         size = len(self.problem.network)
@@ -231,7 +234,10 @@ class Postconditions:
         )
 
     def _question(self) -> str:
-        """Return the question as a command with its settings, by which it can be reproduced."""
+        """Return the question as text by which it can be reproduced: a command, and other settings.
+
+        The command is ``foon-asp facts``. Settings that it does not show follow, one on each line.
+        """
         problem, settings = self.problem, self._settings
         words = ["foon-asp", "facts"]
         for goal in problem.goals:

@@ -43,7 +43,7 @@ class Prepared:
     ``reduced``: the result of the reductions; ``None`` if none ran.
     ``stopped``: whether a limit or ctrl-C interrupted the preparation, so that nothing is known.
     ``restricted_problem``: the problem restricted by user rules, if rules were applied before the search.
-    ``contradicted``: whether user rules allow no tree.
+    ``contradicted``: whether user rules allow no tree. Then there are no units.
     ``full_program``: the program with all user rules, if rules were applied before the search.
     ``unsettled``: whether clingo has to enforce some rules; ``tree`` and ``reduced`` ignore these.
     ``redundant``: whether trees under these rules may need units that lead to no goal.
@@ -83,8 +83,8 @@ class Prepared:
         """The facts of the problem, as text, without the facts about objectives.
 
         If user rules were applied before the search, only facts that some rule reads are written. Bounds on
-        costs are included and, if clingo has to enforce them, the sets of units that rules require. Raises
-        ``KeyboardInterrupt`` at a limit.
+        costs are included. The sets of units that rules require are included if clingo does not get the rules
+        themselves. Raises ``KeyboardInterrupt`` at a limit.
         """
         from foon_asp.encoding import fact_writer as writing  # noqa: PLC0415
 
@@ -111,16 +111,17 @@ class Prepared:
         """Whether a tree, given by unit ids, keeps to all user rules; ``None`` if a limit stops the check.
 
         The rules have to be local: units outside the tree must not matter for them. clingo decides, unless
-        all rules are ready-made. Raises :class:`UserError` for a fault in a rule.
+        all rules are ready-made. At a limit or ctrl-C, nothing is raised. Raises :class:`UserError` for a
+        fault in a rule.
         """
         program = self.full_program or self.program
         if program.ready_made is not None:
             return program.ready_made.keeps(self.problem, units)
         from foon_asp.encoding.fact_writer import write_given  # noqa: PLC0415
 
-        tree = replace(self, units=tuple(sorted(units)), program=program)
-        numbers = list(map(self.problem.network.unit_number, tree.units))
-        run = tree.run(write_given(numbers), "ignore", (question_encoding("second_opinion.lp"),))
+        question = replace(self, units=tuple(sorted(units)), program=program)
+        numbers = list(map(self.problem.network.unit_number, question.units))
+        run = question.run(write_given(numbers), "ignore", (question_encoding("second_opinion.lp"),))
         return True if run.units is not None else (False if run.exhausted else None)
 
     def require_kept(self, units: Collection[int]) -> None:
@@ -188,7 +189,8 @@ def prepare(
 
     Without user rules, the units that can matter are those that the goals can need. With user rules, they are
     all units that can be executed, since a constraint may require units that no goal needs. User rules that
-    only remove or require units are applied first, unless ``settings`` are without reductions.
+    only remove or require units are applied first, unless ``settings`` are without reductions. The costs by
+    user measures are computed before that, and kept in ``problem``.
 
     ``listener``: receives trees and bounds. Without one, no reductions by costs are made, so that all trees
     remain. With one, they may exclude every tree except one of the best. If ``program`` has bounds on trees,
@@ -197,8 +199,8 @@ def prepare(
     ``brief``: whether to skip the search for the best tree without the rules that clingo has to enforce.
     ``solved``: the solved goals of questions that differ only in their goals, by which reductions save work.
 
-    At a limit, a question with ``stopped`` is returned. Raises :class:`UserError` if an objective needs data
-    that are missing, if a constant has the name of an objective, and for items that are used up.
+    At a limit or ctrl-C, a question with ``stopped`` is returned. Raises :class:`UserError` if an objective
+    needs data that are missing, if a constant has the name of an objective, and for items that are used up.
     """
     if problem.items is not None:
         raise UserError("this question is not built for items that are used up")
@@ -225,14 +227,14 @@ def prepare(
                 prepared = _apply_rules(prepared, program.added)
         if prepared.contradicted:
             return prepared
-        program, kept = prepared.program, prepared.restricted_problem or problem
+        program, ruled_problem = prepared.program, prepared.restricted_problem or problem
         if listener is not None and (program.is_built_in or _can_reduce_unsettled(prepared)):
             presolve = partial(reduce, solved=None if prepared.restricted_problem else solved)
             if prepared.unsettled:
                 course = BOUND if brief else None
                 presolve = partial(reduce_under_rules, redundant=prepared.redundant, course=course)
             reduced = presolve(
-                kept,
+                ruled_problem,
                 objective_levels,
                 NONE if program.bounded else settings.reductions,
                 lambda: deadline.passed,
@@ -244,12 +246,14 @@ def prepare(
             if not prepared.unsettled or reduced.subproblem is not None or reduced.tree is None:
                 return replace(prepared, units=reduced.units, tree=reduced.tree, reduced=reduced)
         with deadline.watched("cutting the network"):
-            stocked = replace(kept, kitchen=problem.kitchen.union(for_sale)) if for_sale else kept
-            reached = reach(stocked)
-            tree = first_tree(stocked, reached)
+            stocked_problem = ruled_problem
+            if for_sale:
+                stocked_problem = replace(ruled_problem, kitchen=problem.kitchen.union(for_sale))
+            reached = reach(stocked_problem)
+            tree = first_tree(stocked_problem, reached)
             # backwards with the kitchen as it is: items for sale may also be made
             only_relevant = program.is_built_in or (prepared.unsettled and not prepared.redundant)
-            units = relevant_units(kept, reached) if only_relevant else tuple(sorted(reached.units))
+            units = relevant_units(ruled_problem, reached) if only_relevant else tuple(sorted(reached.units))
         return replace(prepared, units=units, tree=None if tree is None else frozenset(tree))
     except KeyboardInterrupt:
         deadline.interrupt()
@@ -266,19 +270,21 @@ def _apply_rules(prepared: Prepared, rules: "Rules | ReadyMade") -> Prepared:
     if rules.unsettled and not rules.local:
         return prepared
     problem = prepared.problem
-    whole = replace(prepared, full_program=prepared.program)
+    with_full_program = replace(prepared, full_program=prepared.program)
     if rules.leave_to_search(problem):
-        return replace(whole, restricted_problem=problem, unsettled=True, redundant=rules.redundant)
+        return replace(
+            with_full_program, restricted_problem=problem, unsettled=True, redundant=rules.redundant
+        )
     restriction = rules.restriction_of(problem, prepared.deadline)
     if restriction is None:
         return prepared
-    prepared = whole
     if isinstance(restriction, Contradiction):
-        return replace(prepared, contradicted=True)
-    kept = replace(prepared.problem, restriction=restriction)
+        return replace(with_full_program, contradicted=True)
+    restricted_problem = replace(problem, restriction=restriction)
+    restricted = replace(with_full_program, restricted_problem=restricted_problem)
     if not rules.unsettled:
-        return replace(prepared, restricted_problem=kept, program=prepared.program.settled)
-    return replace(prepared, restricted_problem=kept, unsettled=True, redundant=rules.redundant)
+        return replace(restricted, program=prepared.program.settled)
+    return replace(restricted, unsettled=True, redundant=rules.redundant)
 
 
 def _can_reduce_unsettled(prepared: Prepared) -> bool:

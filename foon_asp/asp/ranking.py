@@ -32,7 +32,7 @@ class Ranked:
     Trees that contain an earlier one are excluded. Iteration yields each tree as unit ids in an executable
     order, with its costs. After iteration, ``complete`` is true if there are no other trees. After a limit or
     ctrl-C it is false. Then ``pending`` has the trees that were found but not yielded, in order; better trees
-    may be missing.
+    may be missing. An iteration cannot be repeated.
 
     The constructor assembles the program and prepares the question. Raises :class:`UserError` like
     :func:`foon_asp.asp.solve`.
@@ -92,7 +92,8 @@ class Ranked:
     def _tree_of_numbers(self, numbers: frozenset[int]) -> _Tree:
         """Return the tree of units that are given by id in the whole network, with exact and rounded costs.
 
-        Raises :class:`UserError` for an id of no unit, :class:`BugError` for a tree that does not execute.
+        Raises :class:`UserError` for an id of no unit. Checks that the tree executes and keeps to the rules
+        that were applied before the search; if not, raises :class:`BugError`.
         """
         network = self.problem.network
         units = [network.unit_of_number(number) for number in sorted(numbers)]

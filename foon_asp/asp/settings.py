@@ -42,8 +42,8 @@ class Bounded(NamedTuple):
     each mapping. They are written as facts once their scale is known.
     ``incomparable``: known plans, as numbers of executions by unit id; no plan may contain one.
 
-    Every subtree of a tree that meets the bounds meets them, too (they are antimonotone), so units that the
-    goals do not need cannot matter. If items are used up, there are no rules and files, and each mapping of
+    The bounds are antimonotone: if a tree meets them, so does each subtree. Therefore, units that the goals
+    do not need cannot matter. If items are used up, there are no rules and files, and each mapping of
     ``below`` has one cost.
     """
 

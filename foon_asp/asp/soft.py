@@ -111,8 +111,8 @@ def solve_soft(
             least_penalty = sum(
                 by_number[number] * ways for number, ways in penalty_run.atoms["_broken"].items()
             )
-    bound = "" if least_penalty is None else write_greatest_penalty(least_penalty)
-    outcome = solve_prepared(prepared, objectives, bound)
+    penalty_limit = "" if least_penalty is None else write_greatest_penalty(least_penalty)
+    outcome = solve_prepared(prepared, objectives, penalty_limit)
     holds.require(
         least_penalty is None or outcome.status is not Status.INFEASIBLE, lambda: "the least penalty was lost"
     )

@@ -185,8 +185,9 @@ class _Solver:
     def _solve(self) -> Outcome:
         """Return the outcome of the reductions or, if they leave the question open, of a search with clingo.
 
-        A limit during a run of clingo leads to an outcome without a proof. Any other limit raises
-        ``KeyboardInterrupt``.
+        If the preparation was stopped, the outcome is unknown. If there is no tree, user rules are still
+        checked for errors, which are raised. A limit during a run of clingo leads to an outcome without a
+        proof. Any other limit raises ``KeyboardInterrupt``.
         """
         prepared = self.prepared
         if prepared.stopped:
@@ -451,7 +452,7 @@ class _Solver:
     def _search(self, incumbent: Units) -> Outcome:
         """Search for a tree better than the incumbent, and return the outcome.
 
-        If no better tree exists, the incumbent is optimal.
+        If no better tree exists, the incumbent is optimal. At a limit, the outcome has the best tree found.
         """
         opt_mode, strict = self._opt_mode(incumbent)
         run = self._run(self.levels, opt_mode=opt_mode, bounds=True)
@@ -465,8 +466,8 @@ class _Solver:
     def _conclude(self, run: "Run", units: Units) -> Outcome:
         """Return the outcome of a run that found the tree ``units``.
 
-        If clingo rounded costs, exact costs decide, except with replaced encodings that measure something
-        else.
+        A run that a limit stopped leads to an outcome without a proof. If clingo rounded costs, exact costs
+        decide, except with replaced encodings that measure something else.
         """
         best, proved = self._best_reported(units), run.exhausted
         if self._measures_agree(units, run.cost, self.levels) and proved:
@@ -575,7 +576,8 @@ class _Solver:
         """Return the ground program for the parameters of :meth:`_run`.
 
         The last program is kept. It is returned again for the same parameters; of ``products``, only their
-        number is compared.
+        number is compared. For other parameters, it is closed. The times of writing facts and of grounding
+        are added to ``seconds``.
         """
         question = objectives, len(products), wanted, fewer
         if self._ground:
@@ -636,8 +638,8 @@ class _Solver:
         """Find the best tree by exact costs where clingo compares rounded ones (docs/dev/exact-success.md).
 
         ``best`` is the best tree by rounded costs. Every total that rounding may have hidden is examined. No
-        tree has fewer units than ``fewest``. Returns the best tree, and whether it is proved best. If no
-        costs are rounded, this is ``best``, proved.
+        tree has fewer units than ``fewest``. Returns the best tree found, and whether it is proved best; at a
+        limit, it is not. If no costs are rounded, ``best`` is returned as proved.
         """
         scales = self._current_scales()
         if scales.rounded not in self.levels:  # a kept program has other levels, too
@@ -761,19 +763,19 @@ class _Solver:
         reduced = self.prepared.reduced
         if reduced is None or reduced.costs is None:
             return bounds
-        objective_first, proved = self.levels[0], reduced.costs.first_objective_bound(reduced.bound)
-        if multiplies(objective_first):
-            return {objective_first: min(bounds[objective_first], proved)}
+        first_objective, proved = self.levels[0], reduced.costs.first_objective_bound(reduced.bound)
+        if multiplies(first_objective):
+            return {first_objective: min(bounds[first_objective], proved)}
         assert self.listener.incumbent is not None
         _, best = self.listener.incumbent
-        bounds[objective_first] = max(bounds[objective_first], proved)
+        bounds[first_objective] = max(bounds[first_objective], proved)
         for objective, bound in bounds.items():
             if not multiplies(objective):
                 bounds[objective] = min(bound, best.measure(objective))
         return (
             bounds
-            if bounds[objective_first] == best.measure(objective_first)
-            else {objective_first: bounds[objective_first]}
+            if bounds[first_objective] == best.measure(first_objective)
+            else {first_objective: bounds[first_objective]}
         )
 
     def _report_bound(self, lower: Sequence[int]) -> None:
@@ -846,7 +848,10 @@ def _cut_objects(reduced: Reduced | None) -> list[frozenset[int]]:
 
 
 def _first_cut_objects(cuts: Cuts | None) -> list[frozenset[int]]:
-    """Return the objects of each cut, for the first cuts: up to about ``SEARCH.cut_objects`` in all."""
+    """Return the objects of each cut, for the first cuts: up to about ``SEARCH.cut_objects`` objects in all.
+
+    The list is empty for ``None``.
+    """
     object_sets, total = list[frozenset[int]](), 0
     for cut in cuts.cuts if cuts else ():
         if total > SEARCH.cut_objects:

@@ -192,6 +192,7 @@ class _UnionSearch:
     def _is_above_limit(self, tree: Sequence[int]) -> bool:
         """Whether a tree costs too much to count, by rounded costs.
 
+        If worse trees count, only the first objective is compared; otherwise all are, in order.
         clingo finds trees in order of rounded costs, so the trees not found yet cost too much as well.
         """
         prepared, costs = self._prepared, self._prepared.problem.costs(tree)
@@ -208,7 +209,11 @@ class _UnionSearch:
         return False
 
     def _is_within_limit(self, tree: Collection[int]) -> bool:
-        """Whether the exact costs of a tree are within the cost limit, so that the tree counts."""
+        """Whether the exact costs of a tree are within the cost limit, so that the tree counts.
+
+        If worse trees count, the limit is on the first objective. Otherwise, all costs have to be those of
+        the best tree.
+        """
         levels, costs = self._prepared.levels, self._prepared.problem.costs(tree)
         if not self._worse:
             return costs.key(levels) == self._costs.key(levels)
@@ -216,7 +221,10 @@ class _UnionSearch:
         return figure > limit if multiplies(levels[0]) else figure < limit
 
     def _irredundant_subtree(self, tree: Sequence[int]) -> frozenset[int]:
-        """Return the unit ids of an irredundant subtree of a tree."""
+        """Return the unit ids of an irredundant subtree of a tree, which is in executable order.
+
+        From the last unit to the first, each unit without which the rest still makes the goals is dropped.
+        """
         problem, kept = self._prepared.problem, set(tree)
         for unit in reversed(tree):
             restriction = Restriction(lambda other, kept=kept, unit=unit: other == unit or other not in kept)  # type: ignore[misc]

@@ -50,9 +50,9 @@ def run(
         products: The number of products of rates in the facts.
         endless: Whether grounding may not terminate; then it runs in another process.
 
-    If ctrl-C stops the grounding, the run has no answer. Raises ``LimitError`` at a limit while grounding.
-    Raises :class:`UserError` (see :func:`foon_asp.encoding.encoding.program_fault`) if clingo refuses the
-    program.
+    If a limit or ctrl-C stops the grounding, nothing is raised, and the run has no answer and is not
+    exhausted. The deadline records ctrl-C. Raises :class:`UserError` (see
+    :func:`foon_asp.encoding.encoding.program_fault`) if clingo refuses the program.
     """
     began = time.perf_counter()
     try:

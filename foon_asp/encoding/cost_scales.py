@@ -31,8 +31,9 @@ class CostScale(NamedTuple):
 def cost_scale(costs: Iterable[Fraction]) -> CostScale:
     """Return the scale of the costs of units; ``costs`` has one for each unit.
 
-    If the least common denominator turns all costs into integers of 32 bits, it is the scale. Otherwise,
-    weights are rounded down, and the scale is the greatest by which they fit into 32 bits, but at most 10^8.
+    If the least common denominator turns all costs into integers of 32 bits, it is the scale, and weights are
+    exact. Otherwise, weights are rounded down, and the scale is the greatest by which they fit into 32 bits,
+    but at most 10^8. The sum of all weights may exceed 32 bits.
     """
     costs = list(costs)
     distinct_costs = sorted(set(costs))
@@ -208,7 +209,7 @@ class Scales:
         return figure <= bound if multiplies(objective) else figure >= bound
 
     def _rounds(self, objective: Objective) -> bool:
-        """Whether weights by an objective are rounded down; by success, they are unless all rates are 1."""
+        """Whether weights by an objective are rounded down; by success, they are if some rate is below 1."""
         if multiplies(objective):
             # a weight of 0 may be a rate below 1
             return self.rates is not None and any(rate != 1 for rate in self.rates.weights)

@@ -102,8 +102,8 @@ class Encoding:
     def first_argument_names(self, signatures: Collection[Signature]) -> Iterator[tuple[str, str]]:
         """Yield the predicate name and the first argument of each atom whose signature is in ``signatures``.
 
-        The first argument is empty if it is no name, but a variable or text, for example. Atoms in heads and
-        bodies count, but none with a minus or a pool.
+        There may be repeats. The first argument is empty if it is no name, but a variable or text, for
+        example. Atoms in heads and bodies count, but none with a minus or a pool.
         """
         symbols = (
             node.symbol for statement in self.statements for node in nodes(statement) if _is_atom(node)
@@ -308,8 +308,8 @@ def check_encodings(
 ) -> list[Diagnostic]:
     """Check the user's rules: constraints in ``added``, and files in ``base`` that replace built-in ones.
 
-    ``added`` may have ready-made constraints, too, and ``base`` built-in files; errors in these are not
-    looked for. ``others`` are further built-in files that are loaded.
+    Ready-made constraints among ``added``, and built-in files among ``base``, are not searched for errors.
+    ``others`` are further built-in files that are loaded.
 
     Return two kinds of warnings. One is for a predicate in a body of ``added`` that nothing defines, and
     suggests the most similar one. The other is for a term in the user's constraints that is compared with
@@ -357,12 +357,13 @@ def check_encodings(
 def non_numeric_terms(statements: Iterable[AST], constants: Collection[str]) -> Iterator[tuple[AST, str]]:
     """Yield the terms that are compared with numbers but are no numbers, each with a message.
 
-    Such a term is above every number. It is a name that is not in ``constants``, the names that ``#const``
-    statements set. Or it is a text as guard of a count or sum. Comparisons with ``=`` and ``!=`` are allowed.
+    Such a term is above every number. There are two kinds: a name that is not in ``constants``, which are the
+    names that ``#const`` statements set, and a text as guard of a count or sum. In comparisons with ``=`` and
+    ``!=`` alone, terms are not looked at.
     """
     for node in (node for statement in statements for node in nodes(statement)):
         terms: list[AST] = []
-        texts = False
+        refuses_texts = False
         if node.ast_type == ASTType.Comparison:
             if not _EQUALITIES.issuperset(guard.comparison for guard in node.guards):
                 terms = [node.term, *(guard.term for guard in node.guards)]
@@ -370,20 +371,23 @@ def non_numeric_terms(statements: Iterable[AST], constants: Collection[str]) -> 
             node.ast_type == ASTType.BodyAggregate and node.function not in _NON_NUMERIC
         ):
             terms = [guard.term for guard in (node.left_guard, node.right_guard) if guard is not None]
-            texts = True
+            refuses_texts = True
         for term in terms:
             if term.ast_type != ASTType.SymbolicTerm:
                 continue
             kind = term.symbol.type
             if kind is SymbolType.Function and term.symbol.name not in constants:
                 yield term, f"found {term}, which is above every number; set it, as in #const {term} = 3."
-            elif kind is SymbolType.String and texts:
+            elif kind is SymbolType.String and refuses_texts:
                 yield term, f"found the text {term}, which is above every number: leave out the quotes"
 
 
 @cache
 def _is_built_in(rules: Loaded) -> bool:
-    """Whether rules are a built-in encoding, or a ready-made constraint as file or with constants set."""
+    """Whether rules are a built-in encoding, or a ready-made constraint as file or with constants set.
+
+    The folder of the file decides, so a built-in file that was changed counts, too. The result is cached.
+    """
     path = rules.file if isinstance(rules, Stated) else rules
     return path is not None and path.resolve().is_relative_to(encodings_folder().resolve())
 
@@ -401,7 +405,7 @@ def _definition_errors(encoding: Encoding, owned: frozenset[Signature]) -> list[
     """Return an error for each predicate that rules define although a constraint may not.
 
     These are the predicates in ``owned``, which are those of facts and of the built-in encodings, and those
-    with a reserved name.
+    with a reserved name. A minus before an atom is ignored.
     """
     return [
         encoding.remark(
@@ -543,7 +547,8 @@ def constant_value(name: str, default: str, value: str) -> str:
     """Return a value of a constant as a term, of the type of its default.
 
     If the default is a string, the value gets quotes, unless it has them. If the default is a word, the value
-    may be a word or a whole number. Raises :class:`UserError` for a value of another type.
+    may be a word or a whole number. The defaults ``#sup`` and ``#inf`` count as numbers. Zeros before a
+    number are dropped. Raises :class:`UserError` for a value of another type.
     """
     if default.startswith('"'):
         return quote(string_constant(value))
@@ -615,8 +620,8 @@ def program_fault(
 
     It is :class:`InputError`, with places and source lines, if a message has a place. Otherwise it is
     :class:`UserError` with the text of the messages. Without messages, its text is ``otherwise``, the text of
-    clingo's exception. ``files`` are the files and texts of the program; the source lines of a text are
-    looked up in it.
+    clingo's exception. Of several messages about one place, only the first is kept. ``files`` are the files
+    and texts of the program; the source lines of a text are looked up in it.
     """
     errors: dict[Source, Diagnostic] = {}
     for message in messages:

@@ -173,7 +173,11 @@ def _check_content(text: str, origin: str, file: Path | None, errors: list[Diagn
 
 
 def _include_refusal(file: Path, target: str) -> str:
-    """Return the reason why a file may not include ``target``; empty if it may."""
+    """Return the reason why a file may not include ``target``; empty if it may.
+
+    It may include an existing ``.lp`` file in its folder or below. It may not if the working folder has
+    another file of that name, which clingo would take.
+    """
     folder = file.parent.resolve()
     path = file.parent / target
     if "\0" in target or not path.resolve().is_relative_to(folder) or ".." in Path(target).parts:

@@ -1,5 +1,7 @@
 """Writer of facts for clingo, as text.
 
+A number that does not fit into 32 bits raises :class:`UserError`.
+
 If totals by a rounded objective are compared exactly, some facts are about products of rates. Product number
 K is the exact total of a known tree, as a vector (:meth:`foon_asp.encoding.cost_scales.Scales.vector`). For
 success, it has the exponents of the product of the tree's rates. For other objectives, the same predicates
@@ -89,7 +91,8 @@ def write_facts(
 
     ``scales`` have the weights of ``risk/2`` and ``cost/3``; without scales, ``rate/2``, ``risk/2`` and
     ``cost/3`` are omitted. ``looked_at`` are the predicates that user rules read; ``None`` if there are no
-    user rules. If there are, facts about sources, videos and prices of units are added.
+    user rules. If there are, facts about sources, videos and prices of units are added; prices only if all
+    are whole numbers of hundredths.
 
     Raises :class:`UserError` if user rules read prices and a price is no whole number of hundredths. Also
     raises it for numbers and names that clingo cannot take.
@@ -118,8 +121,9 @@ def write_facts_read(
     """Return the facts of :func:`write_facts` that have the predicates in ``read``.
 
     The facts ``utensil/1``, ``goal/1`` and ``available/1`` are always included. Without ``scales``,
-    ``risk/2`` and ``cost/3`` are omitted, but not ``rate/2``. Raises :class:`UserError` if prices are read
-    and a price is no whole number of hundredths, and for numbers and names that clingo cannot take.
+    ``risk/2`` and ``cost/3`` are omitted, but not ``rate/2``. The fact ``stock/2`` is never written. Raises
+    :class:`UserError` if prices are read and a price is no whole number of hundredths, and for numbers and
+    names that clingo cannot take.
     """
     problem_seen = problem.as_seen or problem
     object_number = problem.network.object_number
@@ -471,7 +475,7 @@ def write_below(below: Iterable[Mapping[Objective, int | Fraction]], scales: Sca
     """Return facts ``_at_most(K,Objective,N)``: a tree has to undercut at least one cost of each set K.
 
     ``below`` are the sets, costs by objective; K is their index. Raises :class:`UserError` for an objective
-    that is rounded.
+    that is rounded, or by which all units together weigh more than 32 bits.
     """
     return "".join(
         write_at_most(number, {o: scales.cost_weight(o, cost) - 1 for o, cost in costs.items()})
@@ -616,7 +620,7 @@ def write_tool_order(
 
 
 def quote(text: str) -> str:
-    """Return a text as a string of clingo, in quotes.
+    """Return a text as a string of clingo, in quotes; backslashes, quotes and line ends are escaped.
 
     Raises :class:`UserError` for a text with a zero character or half a character (a surrogate).
     """

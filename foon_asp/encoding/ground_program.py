@@ -21,7 +21,7 @@ from foon_asp.errors import UserError
 class GroundProgram:
     """Ground program of files and text; raises :class:`ProgramError` if clingo refuses it.
 
-    It is an error, too, if clingo drops an instance of a rule, for which clingo itself has only a message.
+    If clingo only gives a message that it drops an instance of a rule, this counts as a refusal.
     ``arguments`` are options of clingo. ``products`` is the number of products of rates in the text; the
     program part ``_product`` is grounded for each. A search ends at the ``deadline``, if there is one.
     """
@@ -46,7 +46,7 @@ class GroundProgram:
             self._ground([("base", []), *parts])
 
     def _load(self, files: Sequence[str | Stated], logger: Callable[[MessageCode, str], None]) -> None:
-        """Load encodings and rules without a file into clingo."""
+        """Load encodings, which are given as file names, and rules without a file into clingo."""
         for file in files:
             if isinstance(file, Stated):
                 from foon_asp.encoding.parsing import load  # noqa: PLC0415 (slow to import)
@@ -165,7 +165,7 @@ def _wait(handle: SolveHandle, deadline: Deadline) -> None:
 
 
 def _used_units(model: Model) -> frozenset[int]:
-    """Return the numbers of the units in use in an answer.
+    """Return the numbers of the units in use in an answer, as far as ``use/1`` is shown.
 
     Raises :class:`UserError` if an argument of ``use/1`` is no number.
     """

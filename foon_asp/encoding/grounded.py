@@ -35,7 +35,7 @@ class Grounded:
         endless: bool,
         doing: str = "grounding",
     ) -> None:
-        """Ground the files and the text, in this process or in a worker."""
+        """Ground the files and the text, in this process or in a worker; set ``doing`` in the deadline."""
         deadline.doing = doing
         deadline.check()
         names = [str(file) if isinstance(file, Path) else file for file in files]

@@ -35,7 +35,10 @@ def listener(messages: list[str], max_kept: int = 1000) -> Callable[[MessageCode
 
 @contextmanager
 def refuse_messages(messages: list[str]) -> Iterator[None]:
-    """Raise :class:`ProgramError` if clingo stops in the block, or if it leaves messages in ``messages``."""
+    """Return a context that raises :class:`ProgramError` if clingo stops in its block, or leaves messages.
+
+    ``messages`` is the list to which a :func:`listener` adds them. It is looked at when the block ends.
+    """
     try:
         yield
     except RuntimeError as error:

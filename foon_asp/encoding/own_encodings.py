@@ -41,7 +41,7 @@ def exact_success() -> Path:
 
 
 def digest(file: Path) -> str:
-    """Return the SHA-256 digest of a text file, as if it had the line ends of Unix.
+    """Return the SHA-256 digest of a text file in hexadecimal, as if it had the line ends of Unix.
 
     It is cached until the file changes.
     """
@@ -51,7 +51,10 @@ def digest(file: Path) -> str:
 
 @lru_cache(maxsize=100)
 def _digest(file: Path, *_state: int) -> str:
-    """Return the digest of a file; ``_state`` is part of the key of the cache."""
+    """Return the SHA-256 digest of a file in hexadecimal, with line ends changed to those of Unix.
+
+    ``_state`` is only part of the key of the cache.
+    """
     return hashlib.sha256(file.read_bytes().replace(b"\r\n", b"\n")).hexdigest()
 
 

@@ -50,7 +50,7 @@ def nodes(root: AST) -> Iterator[AST]:
 
 
 def _replace_file_name(statement: AST, place: str) -> None:
-    """Replace the file name in the locations of a statement and its nodes by a place."""
+    """Replace, in place, the file name in the locations of a statement and its nodes by ``place``."""
     for node in nodes(statement):
         if "location" in node.keys():  # noqa: SIM118 (it is no mapping)
             begin, end = node.location

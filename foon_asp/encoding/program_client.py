@@ -47,7 +47,10 @@ class WorkerProgram:
         _ask(self._worker, deadline, "ground", _current_folder(), *parameters)
 
     def consequences(self, predicates: Sequence[tuple[str, int]]) -> list[list[tuple[int, ...]]]:
-        """Return the arguments of all atoms of each predicate, given by name and arity."""
+        """Return the arguments of all atoms of each predicate, given by name and arity.
+
+        The result has a list for each predicate; all arguments have to be numbers.
+        """
         numbers: list[list[tuple[int, ...]]] = _ask(
             self._worker, self.deadline, "consequences", list(predicates)
         )

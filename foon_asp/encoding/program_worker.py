@@ -24,7 +24,11 @@ def serve() -> None:
     program: GroundProgram | None = None
 
     def execute(command: str, *parameters: Any) -> object:
-        """Execute a command, and return its result; a search first sends its trees and bounds."""
+        """Execute a command, and return its result; a search first sends its trees and bounds.
+
+        Before ``ground`` and ``derive``, the memory of this process is limited. ``ground`` also changes its
+        current folder, and keeps the program for later commands.
+        """
         nonlocal program
         if command == "ground":
             program = None  # frees the memory before the next one

@@ -50,8 +50,8 @@ class RateScale(NamedTuple):
     def success_bound(self, weight: int) -> Fraction:
         """Return an upper bound on the success of trees whose weights sum up to at least ``weight``.
 
-        Weights are rounded down, so such a tree has ``-ln(success) >= weight / scale``. The bound is at most
-        1.
+        Weights are rounded down, so such a tree has ``-ln(success) >= weight / scale``. The bound is rounded
+        up to 18 digits, and is at most 1.
         """
         value = _CONTEXT.exp(_CONTEXT.divide(Decimal(-weight), Decimal(self.scale)))
         places = _CONTEXT.scaleb(Decimal(1), value.adjusted() - 17)
@@ -60,10 +60,12 @@ class RateScale(NamedTuple):
 
 
 def rate_scale(rates: Collection[Fraction]) -> RateScale:
-    """Return the weights and exponents of rates in (0, 1], with the finest useful scale.
+    """Return the weights of rates in (0, 1] for clingo, and their exponents for exact comparison.
 
-    The scale is a power of ten by which all weights fit into 32 bits. It is at most 10^8, except where a rate
-    next to 1 would weigh almost 0. Raises ``ValueError`` for a rate outside of (0, 1].
+    The scale of the weights is a power of ten by which all weights fit into 32 bits. It is at most 10^8,
+    except where a rate next to 1 would weigh almost 0. The exponents are those of coprime factors of the
+    rates: two products of rates are equal if and only if their exponents add up to the same sums. Raises
+    ``ValueError`` for a rate outside of (0, 1].
     """
     if not all(0 < rate <= 1 for rate in rates):
         raise ValueError("expected success rates above 0 and at most 1")
@@ -88,7 +90,7 @@ def _scale(logarithms: Collection[Decimal]) -> int:
 
 
 def problem_scale(problem: Problem, units: Iterable[int]) -> RateScale:
-    """Return the weights and exponents of the success rates of units of a problem.
+    """Return the :func:`rate_scale` of the success rates that units of a problem have.
 
     Raises :class:`UserError` if a sum of exponents of the units could exceed 32 bits.
     """
@@ -103,7 +105,7 @@ def problem_scale(problem: Problem, units: Iterable[int]) -> RateScale:
 
 
 def _minus_log(rate: Fraction, digits: int) -> Decimal:
-    """Return ``-ln`` of a rate with ``digits`` digits: the relative error is below 10^-digits."""
+    """Return ``-ln`` of a rate in (0, 1] with ``digits`` digits: the relative error is below 10^-digits."""
     failure_rate = 1 - rate
     zeros = -_CONTEXT.divide(Decimal(failure_rate.numerator), Decimal(failure_rate.denominator)).adjusted()
     # The logarithm of 1 + x has as many digits fewer than 1 + x as x begins with zeros.
@@ -129,7 +131,10 @@ def _weight(rate: Fraction, scale: int) -> int:
 
 
 def _exponents(rates: Collection[Fraction]) -> dict[Fraction, dict[int, int]]:
-    """Return for each rate its exponents in a coprime base of all rates, by factor number, without zeros."""
+    """Return for each rate its exponents in a coprime base of all rates, by factor number, without zeros.
+
+    The exponents of factors of a denominator are negative.
+    """
     base = coprime_base(number for rate in rates for number in rate.as_integer_ratio())
     numbers = {factor: number for number, factor in enumerate(base)}
     exponents: dict[Fraction, dict[int, int]] = {}

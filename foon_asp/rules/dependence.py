@@ -211,7 +211,8 @@ class Dependence:
         """Set ``_nonnegative`` to the predicate arguments that are never negative numbers.
 
         This is a greatest fixpoint: an argument is dropped as soon as some rule may derive a negative number
-        for it.
+        for it. Rules with a choice or disjunction as head are not looked at, since their predicates are in
+        ``doubts`` anyway.
         """
         facts = {
             (signature, position) for signature, subjects in SUBJECTS.items() for position in subjects.numbers
@@ -236,10 +237,10 @@ class Dependence:
             self._nonnegative -= maybe_negative
 
     def _is_nonnegative(self, term: AST, condition: Iterable[Conjunct]) -> bool:
-        """Whether a term is never a negative number where the condition holds.
+        """Whether a term is known to be a number from 0 where the condition holds.
 
-        A product counts as nonnegative only if one factor is a number of executions, as ``N`` in
-        ``times(U,N)``.
+        Of operations, only a product can be: if one factor is a number of executions, as ``N`` in
+        ``times(U,N)``, and the other one is known to be a number from 0.
         """
         condition = tuple(condition)
         product = factors(term)

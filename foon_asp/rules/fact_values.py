@@ -187,7 +187,8 @@ class FactValues:
     def _may_have_fact_outside_memory(self, name: str, wanted: Mapping[int, Value]) -> bool:
         """Whether the part of a store that is not in memory may have a fact with the ``wanted`` texts.
 
-        It may if that part is unknown, or too large to be read to the end; all motions and utensils are read.
+        It may if that part is unknown, or too large to be read to the end. Motions and utensils are always
+        read to the end.
         """
         network = self._whole_network
         if network is None or self._has_fact(name, wanted, network):
@@ -208,7 +209,7 @@ def unknown_text_message(facts: Sequence[str], word: str, meant: str | None) -> 
 def nearest_text(facts: Sequence[str], word: str, values: FactValues) -> str | None:
     """Return the text most similar to a word in facts of the predicates ``facts``.
 
-    Return ``None`` if no text is similar.
+    Return ``None`` if no text is similar, or if :meth:`FactValues.nearest` was called too often.
     """
     nearest = [values.nearest(fact, COLUMNS[fact, 2], {1: word}) for fact in facts]
     best = near_labels(word, sorted({match[1] for match in nearest if match is not None}), 1)

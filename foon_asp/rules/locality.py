@@ -113,8 +113,8 @@ class Locality:
                 if clause.is_constraint:
                     continue
                 heads = clause.heads
-                loops = any(head.signature in self._dependence.loops for head in heads)
-                if not clause.plain or loops:
+                is_recursive = any(head.signature in self._dependence.loops for head in heads)
+                if not clause.plain or is_recursive:
                     nonlocality = self.nonlocality(clause)
                     if nonlocality is None and any(self._about[head.signature] for head in heads):
                         nonlocality = Nonlocality(
@@ -164,8 +164,8 @@ class Locality:
     ) -> _TreeTerms:
         """Return the terms that are known to be in the tree wherever the conjuncts hold.
 
-        They are given as text, each with the subjects that it stands for. ``known_terms``, which are in the
-        tree anyway, are in the result, too.
+        They are given as text, each with the subjects that it stands for. Only literals without ``not`` tell
+        of such terms. The result includes ``known_terms``, which are in the tree anyway.
         """
         positive = [literal for literal in conjuncts if isinstance(literal, Literal) and literal.positive]
         tree_terms = {term: set(subjects) for term, subjects in (known_terms or {}).items()}
@@ -183,7 +183,9 @@ class Locality:
     def _arguments_in_tree(self, literal: Literal, tree_terms: _TreeTerms) -> list[tuple[int, Subject]]:
         """Return the arguments that are in the tree if a literal holds: pairs of a position and a subject.
 
-        ``tree_terms`` has the terms that are known to be in the tree.
+        ``tree_terms`` has the terms that are known to be in the tree. A fact has such arguments only if all
+        subjects that it is about are in ``tree_terms``. For an auxiliary predicate, ``tree_terms`` play no
+        role. The list is empty for any other predicate.
         """
         if literal.signature in self._leads_to:
             leads_to = self._leads_to[literal.signature]
@@ -212,7 +214,10 @@ class Locality:
     def _lacking_term_in_conjunct(
         self, conjunct: Conjunct, tree_terms: _TreeTerms, source: Source
     ) -> "_LackingTerm | None":
-        """Return the first term of a conjunct that must be in the tree but may be outside, else ``None``."""
+        """Return the first term of a conjunct that must be in the tree but may be outside, else ``None``.
+
+        The term is empty for a conjunct of unknown kind. A comparison never has such a term.
+        """
         if isinstance(conjunct, Literal):
             return self._lacking_term_in_literal(conjunct, tree_terms, source)
         if isinstance(conjunct, Conditional):
@@ -241,7 +246,8 @@ class Locality:
     ) -> "_LackingTerm | None":
         """Return the first argument that has to be in the tree but may be outside, else ``None``.
 
-        If the predicate is not local whatever its arguments are, return an empty term with the reason.
+        The term is empty if the predicate is not local whatever its arguments are. It is empty also for an
+        argument that may have several values: a pool, an interval, an operation or ``_``.
         """
         signature = literal.signature
         if signature in self._nonlocal:

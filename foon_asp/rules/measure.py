@@ -249,10 +249,12 @@ class _Evaluation:
             for _, name, subject, value in self._derive_costs([unit], alone):
                 if name == (self._measure.name,):
                     source_by_cost.setdefault((subject, value), rule.source)
-        large = {cost: source for cost, source in source_by_cost.items() if _value_text(cost[1]) == BEYOND}
+        large_costs = {
+            cost: source for cost, source in source_by_cost.items() if _value_text(cost[1]) == BEYOND
+        }
         errors = []
-        for (subject, value), source in (large or source_by_cost).items():
-            if large:
+        for (subject, value), source in (large_costs or source_by_cost).items():
+            if large_costs:
                 message = (
                     f"found a number of more than 32 bits in the cost of {unit_text}, "
                     "and clingo has none such; "

@@ -102,8 +102,8 @@ def _term_checks(node: AST, conditions: Sequence[AST], head: Head) -> Iterator[s
             continue
         for leaf, leaf_term in leaves.items():
             if _number(leaf_term) is None:
-                large = f"not -{limit} <= {leaf} <= {limit}"
-                yield f"{head(term)} :- {_body_text([*conditions, large, call])}."
+                large_test = f"not -{limit} <= {leaf} <= {limit}"
+                yield f"{head(term)} :- {_body_text([*conditions, large_test, call])}."
 
 
 def _postfix(term: AST, leaves: dict[str, AST]) -> Iterator[str]:
@@ -278,10 +278,10 @@ def _conditions_without(node: AST, conditions: Sequence[AST]) -> Sequence[AST]:
     """
     other_conditions = [condition for condition in conditions if condition != node]
     bound = _bound_variables(other_conditions)
-    inside = {name for term in _arithmetic_terms(node) for name in variables(term)}
+    calculated_names = {name for term in _arithmetic_terms(node) for name in variables(term)}
     return (
         [condition for condition in other_conditions if bound.issuperset(variables(condition))]
-        if inside <= bound
+        if calculated_names <= bound
         else conditions
     )
 
@@ -353,7 +353,7 @@ class _AnonymousVariableNamer(Transformer):
         self._in_term = False
 
     def visit_BinaryOperation(self, term: AST) -> AST:  # noqa: N802 (the name clingo looks for)
-        """Rename each ``_`` within an operation."""
+        """Return an operation in which each ``_`` has a new name."""
         before, self._in_term = self._in_term, True
         changed = term.update(**self.visit_children(term))
         self._in_term = before

@@ -155,7 +155,8 @@ class Analysis:
     def kind(self, clause: Clause) -> tuple[Kind, Doubt | None]:
         """Return the kind of a clause, and the reason if the kind is ``OTHER``.
 
-        The reason is ``None`` for any other kind.
+        The reason is ``None`` for any other kind. A plain rule with a head is a ``HELPER``, unless its
+        predicate is derived from itself through ``not``, an aggregate, a condition or a choice.
         """
         dependence = self.dependence
         doubt: Doubt | None
@@ -188,7 +189,11 @@ class Analysis:
         )
 
     def _why_never(self, body: Iterable[Conjunct]) -> str | None:
-        """Return why a body cannot hold, whatever the facts are; ``None`` if it may hold."""
+        """Return why a body cannot hold, whatever the facts are; ``None`` if no reason is found.
+
+        A reason is a comparison or aggregate that is known to be false, or an argument of the wrong type in a
+        fact: a number where the facts have a text, for example.
+        """
         for conjunct in body:
             if isinstance(conjunct, Test | Aggregate) and conjunct.holds is False:
                 return _NEVER
@@ -204,10 +209,10 @@ class Analysis:
                 }
                 misfit = position_of_wrong_type(COLUMNS[conjunct.signature], values)
                 if misfit is not None:
-                    texts = misfit in COLUMNS[conjunct.signature].texts
+                    wants_text = misfit in COLUMNS[conjunct.signature].texts
                     kind = (
                         f"{conjunct.arguments[misfit]} is no text in quotes"
-                        if texts
+                        if wants_text
                         else f"{conjunct.arguments[misfit]} is no number"
                     )
                     return f"{conjunct.text} never holds, since {kind}"
@@ -257,7 +262,9 @@ class Analysis:
         """Return a rule with the kind that follows from its translations.
 
         The translations are added to ``removals``, ``at_least_ones`` and ``rows``, under the index of the
-        rule (``number``). A rule that is not local, a ``HELPER`` and an ``OTHER`` rule have none.
+        rule (``number``). A rule that is not local, a ``HELPER`` and an ``OTHER`` rule have none. With a
+        removal, a rule becomes ``DELETING``, unless it is a ``FACT``. With at-least-one constraints, its
+        ``one_of`` is set.
         """
         live_clauses = self.clauses_of_rule[number]
         if not rule.local or rule.kind in {Kind.HELPER, Kind.OTHER}:

@@ -269,9 +269,9 @@ class Translator:
             return None
         body = [f"unit({unit})", *(str(node) for n, node in enumerate(condition) if n != position)]
         weight = factor_texts[0] if factor_texts else "1"
-        signature = element.condition[position]
-        assert isinstance(signature, Literal)
-        return f"{self._answer_head('weighs', weight, unit)} :- {'; '.join(body)}.", signature.signature
+        execution = element.condition[position]
+        assert isinstance(execution, Literal)
+        return f"{self._answer_head('weighs', weight, unit)} :- {'; '.join(body)}.", execution.signature
 
     def _remaining_bound(self, comparison: int, term: AST) -> tuple[bool, int] | None:
         """Return the bound that remains if a comparison is forbidden: whether it is lower, and its number.
@@ -363,7 +363,7 @@ class Translator:
     def _count_units_read_by_atom(self, signature: Signature) -> int:
         """Return on how many units of the tree an atom depends; 2 stands for more than one.
 
-        The result is cached by predicate.
+        It is 2 for a recursive predicate that depends on the tree. The result is cached by predicate.
         """
         if signature in {USE, AVAILABLE}:
             return 1
@@ -379,7 +379,10 @@ class Translator:
         return self._units_read_by_predicate[signature]
 
     def _requires_unit(self, body: Iterable[Conjunct]) -> bool:
-        """Whether a conjunction about one unit is false in the world without units."""
+        """Whether a conjunction about one unit is false in the world without units.
+
+        An atom ``available(O)`` may be true there, since O may be in the kitchen.
+        """
         return any(
             isinstance(conjunct, Literal)
             and (
@@ -401,7 +404,8 @@ class Translator:
     ) -> bool:
         """Whether a body, and the rules that derive what it reads, calculate nothing.
 
-        ``above`` has the predicates whose rules are being checked.
+        Aggregates other than counts, predicates with a minus and conjuncts of unknown kind count as
+        calculations. ``above`` has the predicates whose rules are being checked.
         """
         conjuncts = tuple(body)
         terms = [term for conjunct in conjuncts for term in _terms_of(conjunct)]
@@ -457,7 +461,10 @@ def _has_unknown_part(conjunct: Conjunct) -> bool:
 
 
 def _comparison(test: Test) -> tuple[AST, int, AST] | None:
-    """Return the left term, operator and right term of a comparison; ``None`` for any other test."""
+    """Return the left term, operator and right term of a comparison.
+
+    Return ``None`` for a comparison with ``not``, a chain of comparisons and any other test.
+    """
     atom = test.ast.atom
     if test.ast.sign or atom.ast_type != ASTType.Comparison or len(atom.guards) != 1:
         return None

@@ -183,8 +183,8 @@ class Rules:
     def limits(self, problem: Problem, deadline: Deadline) -> list[LinearRow]:
         """Return the linear limits on executions that rules state, over the units that can execute.
 
-        The result is empty if clingo refuses a rule. A limit per unit becomes one row for each unit. Raises
-        :class:`UserError` as :meth:`restriction_of` does.
+        The result is empty if clingo refuses a rule. A limit per unit becomes one row for each unit. Units of
+        weight 0 are left out. Raises :class:`UserError` as :meth:`restriction_of` does.
         """
         answers = self._answers(problem, deadline) if self._analysis.rows else None
         limits: list[LinearRow] = []
@@ -219,7 +219,8 @@ class Rules:
     def leave_to_search(self, problem: Problem) -> bool:
         """Whether to leave the rules to the search: in a large network, if they require no unit.
 
-        There, the search evaluates the rules faster, since it looks only at units near the goals.
+        A network is large if it has more than ``TUNING.evaluated_units`` units. There, the search evaluates
+        the rules faster, since it looks only at units near the goals.
         """
         large = len(problem.network) > TUNING.evaluated_units
         return large and not self._analysis.at_least_ones
@@ -229,7 +230,7 @@ class Rules:
     ) -> UnitAnswers | None:
         """Return the evaluation of the rules on single units; ``None`` where clingo refuses a rule.
 
-        The result for the last problem and units is cached.
+        A restriction of the problem is ignored. The result for the last problem and units is cached.
         """
         analysis = self._analysis
         if self._last is None or self._last[0] is not problem or self._last[1] is not units:

@@ -195,7 +195,8 @@ class _Search:
     def _find_listed_values(self, program: Sequence[Clause]) -> dict[tuple[Signature, int], Sequence[Symbol]]:
         """Return the values that facts list for predicates without rules, by predicate and position.
 
-        An argument is left out if its value in some fact is unknown.
+        Only predicates of the user count, not those of the network's facts. An argument is left out if its
+        value in some fact is unknown.
         """
         rows: defaultdict[Signature, list[list[Symbol | None]]] = defaultdict(list)
         derived = {
