@@ -31,14 +31,14 @@ class RequestError(Exception):
 def read_message(stream: BinaryIO) -> Json | None:
     """Read the next message from a stream, and wait for it.
 
-    Return ``{}`` for a message that is no JSON object. Return ``None`` at the end of the stream, or for a
-    message of length 0. Raises :class:`ValueError` for a length that is no number.
+    Return ``{}`` for a message that is no JSON object. Return ``None`` at the end of the stream, and for a
+    message whose length is 0 or no number: where it ends is not known.
     """
     length = 0
     while (line := stream.readline()).strip():
         name, _, value = line.partition(b":")
         if name.lower() == b"content-length":
-            length = int(value)
+            length = int(value) if value.strip().isdigit() else 0
     text = stream.read(length)
     with contextlib.suppress(ValueError):
         message = read_json(text)

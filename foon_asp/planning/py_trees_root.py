@@ -83,14 +83,20 @@ def py_trees_root(xml: str | PathLike[str], execute: Execute, is_available: IsAv
         import py_trees  # noqa: F401, PLC0415 (an extra)
     except ImportError:
         raise UserError("running a behaviour tree needs py_trees: pip install 'foon-asp[robot]'") from None
+    expected = "expected XML of --format behaviour-tree"
     text, name = (xml, "the behaviour tree") if isinstance(xml, str) else (_file_text(Path(xml)), str(xml))
     try:
         element = ElementTree.fromstring(text).find("BehaviorTree/*")
     except ElementTree.ParseError as error:
         raise UserError(f"{name}: {error}") from None
     if element is None:
-        raise UserError(f"{name}: found no <BehaviorTree>, expected XML of --format behaviour-tree")
-    return _behaviour(element, execute, is_available)
+        raise UserError(f"{name}: found no <BehaviorTree>, {expected}")
+    try:
+        return _behaviour(element, execute, is_available)
+    except KeyError as error:
+        raise UserError(f"{name}: found an element without {error}, {expected}") from None
+    except ValueError as error:
+        raise UserError(f"{name}: {error}, {expected}") from None
 
 
 def _file_text(file: Path) -> str:
@@ -104,7 +110,8 @@ def _file_text(file: Path) -> str:
 def _behaviour(element: ElementTree.Element, execute: Execute, is_available: IsAvailable) -> "Behaviour":
     """Return the py_trees behaviour of an XML element, with its children.
 
-    Raises :class:`UserError` for an element that is not of this program.
+    Raises :class:`UserError` for an element that is not of this program, :class:`KeyError` for a missing
+    attribute, and :class:`ValueError` for an attribute that is no number or a missing child.
     """
     from py_trees import behaviours, composites, decorators  # noqa: PLC0415
 
@@ -118,6 +125,8 @@ def _behaviour(element: ElementTree.Element, execute: Execute, is_available: IsA
             behaviour = composites.Selector(name, memory=True, children=children)
         case "RetryUntilSuccessful", _:
             attempts = int(element.attrib["num_attempts"])
+            if not children:
+                raise ValueError(f"found no child of {element.tag}")
             failures = float("inf") if attempts == UNTIL_SUCCESS else attempts
             behaviour = decorators.Retry(name, children[0], failures)  # type: ignore[arg-type]
         case "AlwaysSuccess", _:

@@ -232,10 +232,17 @@ def test_a_tree_of_others_is_refused(tmp_path: Path) -> None:
     def runs(xml: str | Path) -> None:
         foon_asp.py_trees_root(xml, lambda _: True, lambda _: True)
 
+    tree = tree_of(recipe("chop: onion > onion; chopped", kitchen="onion"))
     for xml, message in [
         ("<root", "unclosed token"),
         ("<root/>", "no <BehaviorTree>"),
         ('<root><BehaviorTree ID="x"><Parallel/></BehaviorTree></root>', "Parallel"),
+        (tree.replace(' motion="chop"', ""), "the behaviour tree: found an element without 'motion'"),
+        (tree.replace(' step="1"', ' step="one"'), "invalid literal"),
+        (
+            '<root><BehaviorTree ID="x"><RetryUntilSuccessful num_attempts="2"/></BehaviorTree></root>',
+            "no child",
+        ),
     ]:
         with pytest.raises(UserError, match=message):
             runs(xml)
