@@ -98,7 +98,7 @@ class Subproblem:
         return tree | {self.graph.units + o for o in needed & self.problem.kitchen}
 
     def nearest_units(self, min_units: int) -> frozenset[int]:
-        """Return the units among the actions nearest to the goals by reduced cost.
+        """Return the units among the ``remaining`` actions nearest to the goals by reduced cost.
 
         The search ends when ``min_units`` actions are found. These may include actions that take kitchen
         items.

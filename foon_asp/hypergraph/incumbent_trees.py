@@ -15,8 +15,8 @@ if TYPE_CHECKING:  # few questions need it
 def irredundant_subset(graph: GoalGraph, tree: Collection[int], cost: Callable[[int], int]) -> set[int]:
     """Return an irredundant subset of a tree, by removing redundant actions, expensive ones first.
 
-    All actions of the tree have to be able to run. Actions that best achievers by h_add do not use are
-    removed first, all at once.
+    All actions of the tree have to be able to run, and together they have to reach the goals. Actions that
+    best achievers by h_add do not use are removed first, all at once.
     """
     support = Support(graph, tree, cost)
     waiting = [(-cost(action), action) for action in support.actions]

@@ -124,10 +124,10 @@ class LandmarkRelaxation:
     def feasible_weights(self, dual_values: Iterable[tuple[int, float]], capacity: Any) -> dict[int, int]:
         """Return for each row a feasible weight, in parts: its dual, rounded and limited by ``capacity``.
 
-        ``dual_values`` are pairs of a row and its dual. ``capacity`` is an array of the cost of each action,
-        in parts. Weights are subtracted from it in place, so that reduced costs remain in it. If costs remain
-        on all actions of a landmark, its weight is then raised. The weights add up to a lower bound, whatever
-        the duals are.
+        ``dual_values`` are pairs of a row and its dual. Negative and infinite duals count as 0. ``capacity``
+        is an array of the cost of each action, in parts. Weights are subtracted from it in place, so that
+        reduced costs remain in it. If costs remain on all actions of a landmark, its weight is then raised.
+        The weights add up to a lower bound, whatever the duals are.
         """
         scale = self.greatest_cost * PARTS
         rounded_duals = {row: round(Fraction(w) * scale) if 0 < w < math.inf else 0 for row, w in dual_values}

@@ -402,7 +402,7 @@ class Prover:
         return CostFixing(tuple(sorted(fixed)), packing._replace(rounded=0), proof) if fixed else proof
 
     def _landmark_actions(self, proof: Proof) -> Iterator[int]:
-        """Yield the actions that cross the cuts of a proof, also fixed and forbidden ones."""
+        """Yield the actions that cross the cuts of a proof, also fixed and forbidden ones, with repeats."""
         for objects in {cut.objects for cut in cuts_of(proof)}:
             yield from self._landmark_of(frozenset(objects))
 
@@ -550,8 +550,9 @@ class _NodeRelaxation:
     def relax(self, enough: Vector | None) -> ExactOptimum | None:
         """Add cuts until the bound is ``enough``, or no cut is found that the LP solution violates.
 
-        ``enough``: the bound that suffices; ``None`` for no such bound. Returns the exact optimum of the
-        rows. Returns ``None`` if exact arithmetic fails. Raises :class:`_GivenUpError` if time is up.
+        ``enough``: the bound that suffices; ``None`` for no such bound. The last LP solution is recorded in
+        ``lp_values``. Returns the exact optimum of the rows. Returns ``None`` if exact arithmetic fails.
+        Raises :class:`_GivenUpError` if time is up.
         """
         order = self._prover._order
         wanted = math.inf if enough is None else self._prover.as_float(enough)
@@ -596,7 +597,7 @@ class _NodeRelaxation:
     def most_fractional_action(self) -> int | None:
         """Return the action whose LP value is nearest to 1/2; of equally near ones, the most expensive.
 
-        Return ``None`` if all LP values are integers.
+        Return ``None`` if all LP values are integers up to rounding.
         """
         fractional = [
             (abs(x - 0.5), -self._floats[column], self._actions[column])

@@ -427,7 +427,8 @@ class _Presolve:
     def run_guarded(self, step: Callable[[], None]) -> None:
         """Run a step under the guard, and record in ``ended`` whether it ended by itself.
 
-        ``KeyboardInterrupt`` ends the step. It is caught if there is a tree, else passed on.
+        ``KeyboardInterrupt`` ends the step. It is caught if there is a tree, or if the step was complete;
+        else it is passed on.
         """
         self.ended = False
         try:
@@ -501,7 +502,10 @@ class _Presolve:
             self.report(gap)
 
     def report(self, gap: Gap) -> None:
-        """Make a gap the current one; report a new incumbent and a greater bound to the listener."""
+        """Make a gap the current one; report a new incumbent and a greater bound to the listener.
+
+        The bound of the first gap, and bounds without exact costs, are not reported.
+        """
         before, self.gap = self.gap, gap
         if before is None or gap.incumbent is not before.incumbent:
             self._listener.tree(self._units(gap.incumbent))
@@ -513,7 +517,10 @@ class _Presolve:
         return frozenset(a for a in actions if a < self.task.graph.units)
 
     def result(self, redundant: bool = False) -> Reduced:
-        """Return the result; ``redundant`` tells whether trees of its subproblem may be redundant."""
+        """Return the result; ``redundant`` tells whether trees of its subproblem may be redundant.
+
+        If the gap is proved, or the run was interrupted, the units are only the units of the incumbent.
+        """
         task, gap = self.task, self.gap
         if gap is None:
             return Reduced(None, (), False, None, 0, None)

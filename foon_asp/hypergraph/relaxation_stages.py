@@ -133,8 +133,9 @@ def search_among(
 ) -> Stage:
     """Look for a better tree among a few actions by branch and bound (sub-MIP heuristic).
 
-    ``cuts`` are the cuts to begin with, each by its objects. ``effort`` is the budget, in actions looked at.
-    Yields the gap with each better tree. Its bound does not change.
+    Actions that cannot run without others are left out. ``cuts`` are the cuts to begin with, each by its
+    objects. ``effort`` is the budget, in actions looked at. Yields the gap with each better tree. Its bound
+    does not change.
     """
     graph, costs = task.graph, task.costs
     assert costs is not None

@@ -102,7 +102,10 @@ def _preconditions_and_add_effects(
 
 
 def _nodes_at_level(nodes: Iterable[ObjectNode], level: int) -> set[ObjectNode]:
-    """Return nodes with only the parts that count at a level: at level 1, only their labels."""
+    """Return nodes with only the parts that count at a level: at level 1, only their labels.
+
+    Nodes that differ only in other parts become one.
+    """
     return {node_at_level(node, level) for node in nodes}
 
 

@@ -166,7 +166,8 @@ class UsedUp:
 
         If a node is an input and an output, the unit makes only the copies that it puts out beyond those that
         it takes. It uses up only those that it takes beyond the ones it puts out. An input that the user
-        declared as used up is used up in full.
+        declared as used up is used up in full. A node without an amount counts as one copy. Nodes of which no
+        copy is used up or made are left out of the effects.
 
         Parameters:
             network: The network of the unit.

@@ -201,6 +201,8 @@ class Problem:
     def at_hand(self, node: ObjectNode) -> bool:
         """Return whether an object node is in the kitchen.
 
+        It is ``False`` if the network lacks the node.
+
         Parameters:
             node: The object node.
         """
@@ -385,8 +387,8 @@ class Problem:
     def copies_taken(self, plan: Iterable[int]) -> dict[int, int]:
         """Return the fewest copies of each consumable kitchen item with which a plan can be executed.
 
-        The numbers are by object node id; the mapping is empty if items last. If the item is a goal, the
-        copies that are wanted in the end count, too.
+        The numbers are by object node id; the mapping is empty if items last. An item that the plan does not
+        need has 0. If the item is a goal, the copies that are wanted in the end count, too.
 
         Parameters:
             plan: The ids of the units, in the order of execution.
@@ -623,7 +625,7 @@ class Problem:
         """Return the costs of a tree or, where items are used up, of a plan.
 
         Each unit of a tree counts once. Each execution of a plan counts, and so does each copy of a
-        consumable kitchen item that the plan requires.
+        consumable kitchen item that the plan requires. Objectives for which data are missing have no value.
 
         Parameters:
             units: The ids of the units; of a plan in the order of execution, with repeats.
@@ -663,6 +665,8 @@ class Problem:
 
     def figures(self, objective: Objective, units: Iterable[int]) -> Iterable[int | Fraction]:
         """Return the cost of each of some units, in their order; see :meth:`figure`.
+
+        Figures of built-in objectives are computed, and errors raised, only when the result is iterated over.
 
         Parameters:
             objective: The objective.
@@ -723,7 +727,8 @@ def for_each_goal(problem: Problem) -> list[Problem]:
 def count_unpriced(units: Iterable[tuple[str, Sequence[Source]]]) -> list[Unpriced]:
     """Return the number of units without a price for each motion, with the source of the first of them.
 
-    ``units`` has the motion and the sources of each unit without a price.
+    ``units`` has the motion and the sources of each unit without a price. For a unit without sources, the
+    file of the source is ``-``.
     """
     by_motion: dict[str, Unpriced] = {}
     for motion, sources in units:
