@@ -463,7 +463,7 @@ def _minus_log_interval(rate: Fraction) -> tuple[Fraction, Fraction]:
     context = Context(prec=100)  # digits, of which at most 50 cancel in the difference of two logarithms
 
     def logarithm_interval(number: int) -> tuple[Fraction, Fraction]:
-        """Return the ends of an interval that contains the natural logarithm of an integer."""
+        """Return the ends of an interval that contains the logarithm of an integer; both are 0 for 1."""
         logarithm = context.ln(Decimal(number))  # correctly rounded: the exact one is between its neighbours
         if not logarithm:
             return Fraction(0), Fraction(0)

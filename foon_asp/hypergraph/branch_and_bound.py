@@ -195,8 +195,8 @@ class Branching:
     def _close_or_branch(self, node: _Node, node_number: int, expired: Callable[[], bool]) -> bool:
         """Solve the relaxation at a node in rounds of cuts, and close the node or give it two children.
 
-        A node is closed if it is ``hopeless``, or if its bound is above the cutoff. Actions above the cutoff
-        are recorded in a node with children, which forbid them. Better derivations that are found become the
+        A node is closed if it is ``hopeless``, or if its bound is above the cutoff. If the node gets
+        children, both forbid the actions above the cutoff. Better derivations that are found become the
         incumbent. Returns ``False`` if time or effort ran out first, else ``True``. Raises
         :class:`UnsolvedError` if HiGHS fails.
 

@@ -150,7 +150,10 @@ class Cutter:
         """
 
         def most_consumed(action: int) -> int | None:
-            """Return the precondition of a crossing action to add; ``None`` if ``members`` has the action."""
+            """Return the unreached precondition with the most consumers.
+
+            Return ``None`` if ``members`` has the action.
+            """
             if action in members:
                 return None
             lacking = (o for o in self._graph.needs[action] if not reached[o])

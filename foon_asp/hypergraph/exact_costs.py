@@ -108,7 +108,7 @@ class ExactCosts:
         return self._problem.figures(objective, (a for a in actions if a < self._units))
 
     def __call__(self, action: int) -> int:
-        """Return the cost of an action."""
+        """Return the cost of an action, its price included; costs are cached."""
         cost = self._cache.get(action)
         if cost is None:
             cost = self._multiplier * sum(

@@ -106,8 +106,8 @@ def perturbation_search(
     In the other half, a random part of the current tree costs nothing, and sometimes only a random part of
     the other actions is allowed. A tree that costs no more than the current tree replaces it.
 
-    Ends when a tree costs at most ``sufficient_cost``, or time is up. Also ends when each action was looked
-    at ``tries`` times since the last improvement.
+    ``random_number`` returns numbers from 0 to 1. Ends when a tree costs at most ``sufficient_cost``, or time
+    is up. Also ends when each action was looked at ``tries`` times since the last improvement.
     """
     best = current_tree = tree
     total = sum(map(cost, tree))
@@ -156,7 +156,7 @@ def improve_locally(
     total = sum(map(cost, best))
 
     def try_derived_tree(actions: Collection[int], price: Callable[[int], int], h_add: bool) -> None:
-        """Derive a tree at some prices, and keep an irredundant subset of it if it is the best so far."""
+        """Derive a tree at some prices; if an irredundant subset of it is cheaper, make it ``best``."""
         nonlocal best, total
         derived = compute_h_values(graph, actions, price, h_add).tree(graph, graph.goals)
         if derived is not None:

@@ -78,7 +78,7 @@ class _Level:
         self.clear_zone()
 
     def clear_zone(self) -> None:
-        """Start an empty zone."""
+        """Start an empty zone without a frontier; ``cut`` becomes the earlier cut."""
         self.zone: set[int] = set()
         self.frontier: dict[int, None] = {}
         self.cut = self.earlier_cut

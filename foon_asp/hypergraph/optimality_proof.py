@@ -299,6 +299,8 @@ class Prover:
     ) -> tuple[Proof | None, Sequence[Cut]]:
         """Return a proof of ``goal`` without exact linear programming, and the cuts looked at.
 
+        Cuts whose landmark has a used action are left out.
+
         The proof is ``None`` if all attempts fail. They are made in this order:
         1. a greedy cost partition over ``known_cuts``,
         2. reduced-cost fixing by this partition; ``others`` proves the goal without the fixed actions,
@@ -433,13 +435,13 @@ class Prover:
         widened = cache(partial(self._widen, cutter))
 
         def widen_packing(packing: Packing) -> Packing:
-            """Return a cost partition with widened cuts, and with vectors as weights."""
+            """Return a cost partition with widened cuts; weights in steps become vectors of costs."""
             weights = [(widened(cut.objects), (weight[0] * step,)) for cut, weight in packing.weights]
             _, rounded = self.round_up(self._order.total(weight for _, weight in weights))
             return Packing(tuple(weights), rounded=rounded)
 
         def widen_proof(proof: Proof) -> Proof:
-            """Return a proof with widened cuts, and with vectors as weights."""
+            """Return a proof with widened cuts; weights in steps become vectors of costs."""
             if isinstance(proof, Branch):
                 return Branch(proof.action, widen_proof(proof.without), widen_proof(proof.using))
             if isinstance(proof, Hopeless):
@@ -614,7 +616,10 @@ class _NodeRelaxation:
         return sorted({action for action, x in lp_values if round(x)} | self._used)
 
     def _separate(self) -> bool:
-        """Add cuts with disjoint landmarks that the last LP solution violates; return whether it has any."""
+        """Add cuts with disjoint landmarks that the last LP solution violates.
+
+        Return whether it violates any. At most ``tuning.RELAXATION.cuts`` cuts are added at a call.
+        """
         import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
 
         count = len(self._actions)

@@ -121,7 +121,7 @@ def reduce(
     ``listener``: receives trees and bounds.
     ``guard``: returns a context in which computations are interrupted when time is up, as by ctrl-C.
     ``solved``: answers to questions that differ only in goals and removed units. They speed up this question,
-    and its answer is added to them.
+    and its answer is added to them. They are ignored if :func:`can_use_solved_goals` returns false.
 
     Raises ``KeyboardInterrupt`` if it is interrupted before there is a tree.
     """
@@ -200,7 +200,10 @@ def reduce_at_costs(
         task = replace(task, costs=costs, coarse_costs=costs, below=below, scope=subproblem.remaining)
 
         def fix_before_rounds(task: Task, gap: Gap, h_values: HValues) -> Stage:
-            """Exclude candidates above the cutoff first, and run all rounds only if few enough remain."""
+            """Exclude candidates above the cutoff first, and run all rounds only if few enough remain.
+
+            If ``below`` is 0, or there are at most ``max_actions`` candidates, all rounds are run at once.
+            """
             if below and len(gap.candidates) > max_actions:
                 before = len(gap.candidates)
                 gap, cuts = greedy.raise_bound(task, gap, h_values, greedy.h_max_guide(task, gap))
@@ -449,7 +452,8 @@ class _Presolve:
     def _run_course(self, course: Course, known_tree: Collection[int]) -> None:
         """Do what :meth:`run` does, without the guard.
 
-        If there is no tree, ``gap`` stays ``None``. If the task has no reductions, the stages are not run.
+        Trees are compared at rough costs, and the first incumbent is made irredundant. If there is no tree,
+        ``gap`` stays ``None``. If the task has no reductions, the stages are not run.
         """
         task, stages = self.task, course.near_goals
         opening = _first_tree_near_goals(task)
@@ -468,7 +472,11 @@ class _Presolve:
         """Run all rounds under the guard, from a gap of ``solved`` if it has one; record the answer in it."""
 
         def run_from_shared_gap() -> None:
-            """Run the rounds from the gap of ``solved``, or from a first tree if there is no such gap."""
+            """Run the rounds from the gap of ``solved``, or from a first tree if there is no such gap.
+
+            If ``solved`` has exact costs, the task gets them. At the end, the answer is recorded in
+            ``solved``.
+            """
             costs = solved.costs
             if costs is not None:
                 self.task = replace(self.task, costs=costs)
@@ -486,7 +494,10 @@ class _Presolve:
         self.run_guarded(run_from_shared_gap)
 
     def extend_or_run(self) -> None:
-        """Run all rounds; with required sets, first try to extend trees for the goals alone."""
+        """Run all rounds; with required sets, first try to extend trees for the goals alone.
+
+        This is tried only with the reduction ``dear``. If it leads to a gap, the rounds are not run again.
+        """
         restriction = self.task.problem.restriction
         if restriction is not None and restriction.required and Reduction.DEAR in self.task.reductions:
             _presolve_by_extension(self)
@@ -544,7 +555,8 @@ def _presolve_by_extension(presolve: _Presolve) -> None:
     tree costs no more than the best tree for the goals alone, it is optimal. Otherwise all rounds are run
     over the candidates.
 
-    The result is in ``presolve.gap``, which stays ``None`` if the relaxation does not help.
+    The result is in ``presolve.gap``, which stays ``None`` if the relaxation does not help. Bounds of the
+    relaxation are reported, its trees are not.
     """
     task = presolve.task
     graph, restriction = task.graph, task.problem.restriction

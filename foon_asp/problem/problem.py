@@ -228,8 +228,8 @@ class Problem:
     def about(self, units: Iterable[FunctionalUnit]) -> "Problem":
         """Return this problem over a network that also has the given units.
 
-        If the network is part of a store, those of the units that the store has are read from it. Otherwise
-        this problem itself is returned.
+        If the network is part of a store, the units are read from the store; units that it lacks are left
+        out. Otherwise this problem itself is returned.
 
         Parameters:
             units: The units.
@@ -253,7 +253,8 @@ class Problem:
         """Return a variation of this problem: with other goals, container rule, kitchen, rates or prices.
 
         Nothing is read or indexed again, except the part of a store that the new problem needs in addition.
-        Whether items are used up does not change.
+        ``None`` keeps what this problem has. Whether items are used up does not change. If they are, a new
+        kitchen comes with its own stock.
 
         Parameters:
             goals: The new goals: one object node or several, by name or as :class:`ObjectNode`.
@@ -304,7 +305,7 @@ class Problem:
 
     @cached_property
     def makers(self) -> Sequence[tuple[int, ...]]:
-        """The achievers of each object node: the units that make it under the container rule, in order.
+        """The achievers of each object node: the units that make it under the container rule, ascending.
 
         A restriction removes units, and appends each of its required sets as the achievers of an additional
         node.
@@ -331,7 +332,7 @@ class Problem:
         motions_with_amounts = {unit.motion for unit in self.amounts}
 
         def flow(unit: int) -> Flow:
-            """Return the flow of a unit, with the amounts that are stated for it."""
+            """Return the flow of a unit with its stated amounts; without such amounts, that in ``plain``."""
             has_amounts = network.motions[unit] in motions_with_amounts
             amounts = self.amounts.get(network.unit(unit)) if has_amounts else None
             if amounts is None:
