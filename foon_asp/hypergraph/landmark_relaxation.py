@@ -148,8 +148,8 @@ def _subgraph(
 ) -> tuple[Hypergraph, list[int], list[int]]:
     """Return the graph of the given actions, and for each of its objects the number in the whole graph.
 
-    The third value are the targets in the new graph. Its objects are the targets and the non-initial
-    preconditions of the actions, and none of them is initial.
+    The third value is the list of the targets in the new graph. The objects of the new graph are the targets
+    and the non-initial preconditions of the actions, and none of them is initial.
     """
     targets, start = tuple(targets), graph.start
     objects = sorted({o for a in actions for o in graph.needs[a] if o not in start}.union(targets))

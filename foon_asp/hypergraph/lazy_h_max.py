@@ -26,7 +26,8 @@ def lazy_h_max_test(
     def is_within(o: int, limit: float, depth: int = tuning.CUTS.lazy_depth) -> bool:
         """Return whether the h_max of an object is at most a limit, and record what this implies.
 
-        Preconditions are looked at up to this ``depth`` of recursion.
+        Preconditions are looked at up to this ``depth`` of recursion. Beyond it, and once the budget is used
+        up, the result is ``True`` without proof.
         """
         nonlocal budget
         if lower_bounds.get(o, 0) > limit:
