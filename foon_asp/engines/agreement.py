@@ -34,9 +34,10 @@ ENGINES: Final = (
 
 
 def find_engines() -> tuple[Engine, ...]:
-    """Return all engines except bare clingo, the built-in ones first, then those of installed packages.
+    """Return all engines except bare clingo: first the built-in ones, then the engines of installed packages.
 
-    Raises :class:`UserError` if a package offers an engine whose name another engine has, ignoring case.
+    Raises :class:`UserError` if a package offers an engine whose name another engine or foon-asp itself has,
+    ignoring case.
     """
     reserved = ["foon-asp", bare_clingo.BARE_CLINGO, *(engine.name for engine in ENGINES)]
     offers = offers_by_name(find_offers(ENTRY_POINTS), reserved)

@@ -1,9 +1,9 @@
 """Branch and cut for the cheapest derivation, over the linear relaxation of hitting all landmarks.
 
 At each node of the search tree, some actions are used and some are forbidden. The preconditions of used
-actions are targets, too, and used actions cost nothing more. Cuts that an LP solution violates are added as
-in :mod:`foon_asp.hypergraph.cost_partition`. A cut is valid at every node at which it contains a target, so
-all nodes share their cuts.
+actions are additional targets, and used actions cost nothing more. Cuts that an LP solution violates are
+added as in :mod:`foon_asp.hypergraph.cost_partition`. A cut is valid at every node at which it contains a
+target, so all nodes share their cuts.
 
 Integers alone close a node: a cost partition or a cut with an empty landmark. The weights of the partition
 are rounded so that they add up to at most the cost of each action. The floats of HiGHS only guide the search.
@@ -105,7 +105,7 @@ class Branching:
         self._relaxation.add_whole_cuts(cuts)
 
     def search(self, effort: int, expired: Callable[[], bool]) -> Iterator[None]:
-        """Search the tree of nodes, the least bound first, until all nodes are closed.
+        """Search the tree of nodes in the order of their bounds, least first, until all nodes are closed.
 
         Yields ``None`` after each new incumbent or bound, and once all nodes are closed. Ends early, with
         ``closed`` still false, in three cases: ``effort`` actions were looked at, ``expired`` returns true,

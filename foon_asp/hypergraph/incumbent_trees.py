@@ -42,8 +42,9 @@ def trees_by_lp_values(
 ) -> Iterator[set[int]]:
     """Yield an irredundant tree that follows h_add and one that follows h_max, both guided by LP values.
 
-    For the h-values, the cost of an action is multiplied by 1 minus its LP value. The trees have no action of
-    ``without``. Yields nothing if there is no such tree.
+    For the h-values, the cost of an action is multiplied by 1 minus its LP value. Each action has to have
+    one, unless it is in ``without``. The trees have no action of ``without``. Yields nothing if there is no
+    such tree.
     """
     allowed = [a for a in actions if a not in without]
 

@@ -98,8 +98,8 @@ class LandmarkRelaxation:
         """Add cuts that an LP solution violates; return the numbers of cuts added and of actions looked at.
 
         ``cutters`` are asked one after the other. Landmarks are disjoint, and have no action of ``used``.
-        ``lp_values``, an array of the LP value of each action, is changed in place. Ends when no cut is left,
-        ``budget`` actions were looked at, or ``stopped`` returns true.
+        ``lp_values`` is an array of the LP value of each action. It is changed in place. Ends when no cut is
+        left, ``budget`` actions were looked at, or ``stopped`` returns true.
         """
         added = looks = 0
         for cutter in cutters:

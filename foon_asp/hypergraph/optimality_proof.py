@@ -6,7 +6,7 @@ the dual of the hitting set relaxation. Landmarks are added as long as the LP so
 Helmert 2010; Haslum, Slaney and Thiébaux 2012 for the hitting sets).
 
 A limit on a resource is one more row of the relaxation. An action that consumes the resource may then carry
-more weight, and the weight of the limit times its amount is subtracted from the bound.
+more weight. In return, the weight of the limit times its amount is subtracted from the bound.
 """
 
 import math
@@ -124,8 +124,8 @@ class Prover:
     def prove(self, derivation: Iterable[int], cases: Cases = None) -> Proof | None:
         """Return a proof that no derivation costs less than this one; ``None`` if no proof is found in time.
 
-        Known cuts are tried first. If they do not suffice, the proof branches on ``cases``, the nested cases
-        of an earlier search. Raises :class:`CheaperError` if a cheaper derivation is found.
+        Known cuts are tried first. If they do not suffice, the proof branches on ``cases``. These are the
+        nested cases of an earlier search. Raises :class:`CheaperError` if a cheaper derivation is found.
         """
         try:
             goal, nothing = self._cost_of(derivation), frozenset[int]()
@@ -143,8 +143,9 @@ class Prover:
     def relax(self, derivation: Iterable[int]) -> tuple[Packing, Vector] | None:
         """Return the optimal cost partition of the relaxation, before any branching, and its lower bound.
 
-        The relaxation may exceed limits, at a cost far above that of ``derivation``. The lower bound is
-        rounded up. Return ``None`` if the targets cannot be reached, time is up, or exact arithmetic fails.
+        The relaxation may exceed limits, at a cost far above that of ``derivation``. This argument has no
+        other effect. The lower bound is rounded up. Return ``None`` if the targets cannot be reached, time is
+        up, or exact arithmetic fails.
         """
         nothing: frozenset[int] = frozenset()
         barred = self._barred_actions(nothing, self._forbidden).values()
@@ -308,7 +309,7 @@ class Prover:
         4. :func:`prove_by_branching`, if ``at_root`` is true.
 
         All costs are multiples of ``step``. If it is 0, only the first attempt is made. If ``without_lp`` is
-        true, the first two are.
+        true, only the first two are made.
         """
         targets = set(cutter.targets)
         known_cuts = [cut for cut in known_cuts if not targets.isdisjoint(cut)]
@@ -490,8 +491,8 @@ class Prover:
 class _NodeRelaxation:
     """The relaxation at one node of the branching.
 
-    It has a column for each action of the cutter and for the excess over each limit, and a row for each limit
-    and each cut.
+    It has a column for each action of the cutter, and one for the excess over each limit. It has a row for
+    each limit and for each cut.
 
     ``goal``: the bound to be proved. The excess over a limit costs 1000 times as much.
     ``lp_values``: the LP values of the columns in the last solution.

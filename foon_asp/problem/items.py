@@ -61,7 +61,7 @@ def fate(
     ``inputs`` and ``outputs`` are all inputs and outputs of the unit, including any that a container rule
     skips. ``declared`` maps labels and nodes to whether the user declared that they stay. A declaration
     overrides all other reasons, and one for a node overrides one for its label. If an output has the label of
-    the input but is another node, the unit changes the input, which is then used up.
+    the input but is another node, the unit changes the input. Then the input is used up.
     """
     stays = declared.get(node, declared.get(node.label))
     if stays is not None:

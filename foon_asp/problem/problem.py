@@ -120,7 +120,7 @@ class Origin(Protocol):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Problem:
-    """A planning problem: goals, a kitchen and a container rule, over a network.
+    """A planning problem over a network, with goals, a kitchen and a container rule.
 
     :meth:`foon_asp.Foon.problem` makes one from names.
 
@@ -389,7 +389,7 @@ class Problem:
         """Return the fewest copies of each consumable kitchen item with which a plan can be executed.
 
         The numbers are by object node id; the mapping is empty if items last. An item that the plan does not
-        need has 0. If the item is a goal, the copies that are wanted in the end count, too.
+        need has 0. If the item is a goal, the copies that are wanted in the end count as well.
 
         Parameters:
             plan: The ids of the units, in the order of execution.
