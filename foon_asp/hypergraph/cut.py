@@ -94,7 +94,7 @@ class Cutter:
         )
 
     def cut(self, keep: Iterable[int], order: Iterable[int]) -> Cut | None:
-        """Return a cut with a small landmark, which has no action of ``keep``.
+        """Return a cut with a small landmark that has no action of ``keep``.
 
         Grows a set of actions that does not reach all targets: first by ``keep``, then by the actions of
         ``order`` one by one. An action with which all targets would be reached is refused. The landmark

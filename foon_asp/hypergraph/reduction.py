@@ -123,7 +123,8 @@ def reduce(
     ``solved``: answers to questions that differ only in goals and removed units. They speed up this question,
     and its answer is added to them. They are ignored if :func:`can_use_solved_goals` returns false.
 
-    Raises ``KeyboardInterrupt`` if it is interrupted before there is a tree.
+    Raises ``KeyboardInterrupt`` if it is interrupted before there is a tree. A later interruption is caught,
+    and recorded in the result.
     """
     with without_garbage_collection():
         with guard():
@@ -190,6 +191,8 @@ def reduce_at_costs(
     and those of trees better than the incumbent.
     ``max_actions``: with ``below``, a number of actions. If more remain, and the first cuts exclude hardly
     any action, the reduction ends after these cuts.
+
+    Interruptions are treated as by :func:`reduce`.
     """
     presolve_tuning = tuning.PRESOLVE._replace(branching_budget=0, landmark_actions=math.inf)
     if below:  # clingo gets the remaining actions with an incumbent
@@ -574,7 +577,7 @@ def _presolve_by_extension(presolve: _Presolve) -> None:
     def extend() -> None:
         """Extend the best tree for the goals alone, and set the gap of ``presolve``; fill ``h_values``.
 
-        Does nothing if no extension is found.
+        Does nothing if no extension is found. Raises ``KeyboardInterrupt`` if time is up.
         """
         tree = extend_tree(task.thin_graph, gap.incumbent, costs, len(graph.needs) // 4)
         if tree is None:

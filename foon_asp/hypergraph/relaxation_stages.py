@@ -75,8 +75,9 @@ def follow_solution(task: Task, gap: Gap, partition: CostPartition, looks: int) 
     """Look for better trees that follow an LP solution, then apply its cost partition.
 
     If the LP solution and the trees use few actions, branch and bound over these looks for better trees.
-    Otherwise, a perturbation search does. ``looks`` is the budget: how often each candidate may be looked at.
-    Yields each gap that it reaches.
+    Otherwise, a perturbation search does. Neither is run if the bound of the partition reaches the cost of
+    the incumbent. ``looks`` is the budget: how often each candidate may be looked at. Yields each gap that it
+    reaches.
     """
     costs, graph = task.costs, task.graph
     assert costs is not None
