@@ -109,8 +109,7 @@ class Purchases:
 def _add_purchases(network: Network, wares: Sequence[int]) -> Network:
     """Return a network with an additional last unit for each ware; the unit makes the ware out of nothing.
 
-    The public numbers of these units follow the last one. The level-3 units behind units of a lower level are
-    left out.
+    The public numbers of the new units follow the last public number. The result has no level-3 network.
     """
     count, numbers = len(wares), network.unit_numbers
     if numbers:
