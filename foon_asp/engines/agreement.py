@@ -34,9 +34,10 @@ ENGINES: Final = (
 
 
 def find_engines() -> tuple[Engine, ...]:
-    """Return all engines except bare clingo, the built-in ones first, then those of installed packages.
+    """Return all engines except bare clingo: first the built-in ones, then the engines of installed packages.
 
-    Raises :class:`UserError` if a package offers an engine whose name another engine has, ignoring case.
+    Raises :class:`UserError` if a package offers an engine whose name another engine or foon-asp itself has,
+    ignoring case.
     """
     reserved = ["foon-asp", bare_clingo.BARE_CLINGO, *(engine.name for engine in ENGINES)]
     offers = offers_by_name(find_offers(ENTRY_POINTS), reserved)
@@ -77,8 +78,9 @@ def cross_check(
 
     Bare clingo checks answers under any rules. The ``engines`` check answers only if all rules are ready-made
     ones that do nothing but forbid units. If items are used up, only bare clingo is asked, and the result has
-    one verdict. An answer that is not proved is not checked. After ctrl-C, the verdicts of the remaining
-    engines say ``interrupted``.
+    one verdict. An answer that is not proved is not checked. An engine that does not end in time, or does not
+    know such a question, has checked nothing. Ctrl-C is caught: the verdicts of the interrupted engine and of
+    all later ones say ``interrupted``.
 
     Raises :class:`DisagreementError` for the first engine whose answer differs. For an engine of another
     package, this error is raised only if the engine's tree is valid and better than ours. Otherwise that
@@ -194,9 +196,9 @@ def _is_within_float_error(objective: Objective, ours: Costs, theirs: Costs) -> 
     """Return whether rounding in floats can explain that two trees cost different amounts by an objective.
 
     The tolerance is two millionths for each unit of both trees, since an engine may round logarithms to
-    millionths. It is relative to the cost; for rates, it applies to the logarithm of their ratio. A greater
-    tolerance would hide wrong answers, and a smaller one would report rounding as a bug. Return ``False`` for
-    an objective in whole numbers, and if a rate is 0.
+    millionths. The tolerance is relative to the cost. For rates, it applies to the logarithm of their ratio.
+    A greater tolerance would hide wrong answers, and a smaller one would report rounding as a bug. Return
+    ``False`` for an objective in whole numbers, and if a rate is 0.
     """
     our_cost, their_cost = Fraction(ours.measure(objective)), Fraction(theirs.measure(objective))
     tolerance = 2e-6 * (1 + ours.units + theirs.units)

@@ -127,8 +127,9 @@ class Clingo:
         """Run clingo; return its result, whether the search was exhausted, and the answers it printed.
 
         The result is a text of clingo such as ``OPTIMUM FOUND``. ``options`` are words for clingo's command
-        line. ``with_second_opinion`` adds ``second_opinion.lp`` to the program. Raises
-        :class:`NotCheckedError` if time or memory runs out, or clingo fails.
+        line. ``with_second_opinion`` adds ``second_opinion.lp`` to the program. The process of clingo is
+        stopped in any case, also at ctrl-C, which is passed on. Raises :class:`NotCheckedError` if time or
+        memory runs out, or clingo fails.
         """
         program, timeout_message = self._program, f"clingo did not finish within {self._seconds:g} s"
         second_opinion = (question_encoding("second_opinion.lp"),) if with_second_opinion else ()
@@ -172,7 +173,8 @@ class Clingo:
 def _read_witness(witness: dict[str, Any]) -> ClingoAnswer:
     """Return the answer in a witness, which is one answer set in clingo's JSON.
 
-    Atoms other than ``use/1`` and ``times/2``, which files of users may show, are ignored.
+    A unit with an atom ``use/1`` is used once. If there is also an atom ``times/2``, its number counts
+    instead. Other atoms are ignored; files of users may show them. Without objectives, the costs are empty.
     """
     times: dict[int, int] = {}
     for used in filter(None, map(_USED.fullmatch, witness["Value"])):
@@ -205,7 +207,8 @@ class _Comparison:
 
         If neither side has a tree, they agree. If an encoding is replaced such that clingo adds up other
         costs, only these sums are compared. If one objective is rounded in the facts, kinds of trees are
-        compared exactly. If several are rounded, nothing is checked.
+        compared exactly. If several are rounded, nothing is checked, and :class:`NotCheckedError` is raised.
+        Otherwise, the costs by all objectives are compared.
 
         Raises :class:`DisagreementError` or :class:`NotCheckedError`.
         """
@@ -233,7 +236,7 @@ class _Comparison:
         """Have clingo add up the costs of our tree; return our tree as an answer of clingo with these costs.
 
         Raises :class:`DisagreementError` if our tree does not execute, its claimed costs or penalty are
-        wrong, or it breaks rules in clingo. ``theirs``, clingo's own answer, is only for this error.
+        wrong, or it breaks rules in clingo. ``theirs`` is clingo's own answer; the errors contain it.
         """
         units = check_tree(self.problem, EngineAnswer("foon-asp", self.levels, self.outcome.units, True))
         if self.problem.costs(units) != self.outcome.costs:
@@ -286,7 +289,8 @@ class _Comparison:
     def _require_same_costs(self, answer: ClingoAnswer, objectives: Iterable[Objective]) -> None:
         """Raise :class:`DisagreementError` if an answer and our tree differ in penalty or in an objective.
 
-        The costs by the given ``objectives`` are computed anew from the units of the answer.
+        The costs by the given ``objectives`` are computed anew from the units of the answer. Penalties are
+        compared only if there are soft constraints.
         """
         compared = self._engine_answer(answer)
         if self.claim.soft and self.claim.penalty != answer.costs[0]:
@@ -404,7 +408,10 @@ class _Comparison:
         return unit
 
     def _engine_answer(self, answer: ClingoAnswer | None) -> EngineAnswer:
-        """Return an answer of clingo as that of an engine; it has no tree if ``answer`` is ``None``."""
+        """Return an answer of clingo as that of an engine; it has no tree if ``answer`` is ``None``.
+
+        Each used unit is listed once, by ascending public number.
+        """
         units = None if answer is None else tuple(map(self._unit_id, sorted(answer.times)))
         return EngineAnswer(BARE_CLINGO, self.levels, units, True)
 
@@ -456,7 +463,7 @@ def _minus_log_interval(rate: Fraction) -> tuple[Fraction, Fraction]:
     context = Context(prec=100)  # digits, of which at most 50 cancel in the difference of two logarithms
 
     def logarithm_interval(number: int) -> tuple[Fraction, Fraction]:
-        """Return the ends of an interval that contains the natural logarithm of an integer."""
+        """Return the ends of an interval that contains the logarithm of an integer; both are 0 for 1."""
         logarithm = context.ln(Decimal(number))  # correctly rounded: the exact one is between its neighbours
         if not logarithm:
             return Fraction(0), Fraction(0)
@@ -470,7 +477,8 @@ def _minus_log_interval(rate: Fraction) -> tuple[Fraction, Fraction]:
 def _limit_process(process: int, seconds: float, memory: int) -> None:
     """Limit the memory (in bytes) and the processor time of the process with this id.
 
-    Such limits stop a grounding that does not end. On systems without such limits, nothing happens.
+    The limit of processor time is ``seconds``, rounded up, plus 1. Such limits stop a grounding that does not
+    end. If the system knows no such limits, or the process has ended, nothing happens.
     """
     with contextlib.suppress(ImportError, AttributeError, OSError, ValueError):
         import resource  # noqa: PLC0415 (not everywhere)

@@ -153,7 +153,8 @@ def scope_of(problem: Problem, forbidden: frozenset[int]) -> Scope:
 def float_cost(problem: Problem, objective: Objective, unit: int) -> float:
     """Return the cost of a unit by an objective other than ``kitchen``; for ``success``, -ln of its rate.
 
-    Raises :class:`NotCheckedError` if the cost is above 10^9, since floats lose small costs beside it.
+    Raises :class:`NotCheckedError` if the cost is above 10^9, since floats lose small costs beside it. Raises
+    ``ValueError`` for a rate of 0.
     """
     if multiplies(objective):
         rate = problem.rate(unit)

@@ -46,8 +46,8 @@ def solve_with_fast_downward(
     """Search for an optimal tree by the first objective alone, as :class:`Solve` does.
 
     Fractions and logarithms of rates are rounded to millionths. The time limit is ``seconds``, rounded to
-    whole seconds, at least 1. If time or memory (4 GB) runs out, the answer is not ``finished``. If all goals
-    are in the kitchen, the empty tree is returned at once.
+    whole seconds, at least 1. If time or memory (4 GB) runs out, the answer is not ``finished``. The units of
+    the answer are ascending. If all goals are in the kitchen, the empty tree is returned at once.
 
     Raises :class:`NotCheckedError` if costs are too large. Raises :class:`BugError` if Fast Downward is not
     installed or fails.

@@ -31,8 +31,9 @@ def solve_with_highs(
     """Search for a lexicographically optimal tree, as :class:`Solve` does.
 
     Objectives are minimized one after the other, each with the more important ones fixed at their optimum. If
-    time runs out before the last is minimized, the answer has no tree and is not ``finished``. If all goals
-    are in the kitchen, the empty tree is returned at once.
+    time runs out before the last is minimized, the answer has no tree and is not ``finished``. The answer is
+    the same if HiGHS finds a later objective infeasible, since this is an error of rounding. If all goals are
+    in the kitchen, the empty tree is returned at once.
     """
     if not scope_of(problem, forbidden).goals:  # a program without variables; the empty tree is optimal
         return EngineAnswer(HIGHS, objectives, (), True)
@@ -84,7 +85,8 @@ class _Program:
     def minimize(self, objective: Objective, seconds: float) -> str:
         """Minimize one objective; return ``optimal``, ``infeasible`` or, if time ran out, ``stopped``.
 
-        Raises :class:`BugError` if HiGHS ends in another way.
+        Raises :class:`BugError` if HiGHS ends in another way. Raises :class:`NotCheckedError` as
+        :func:`float_cost` does.
         """
         highs, statuses = self._highs, self._library.HighsModelStatus
         highs.setOptionValue("time_limit", float(highs.getRunTime() + seconds))

@@ -27,11 +27,11 @@ def _run_offered(
     forbidden: frozenset[int],
     seconds: float,
 ) -> EngineAnswer:
-    """Run the engine of an offer in a process of its own; the other arguments are those of :class:`Solve`.
+    """Run the engine of an offer in a process of its own. The other arguments are those of :class:`Solve`.
 
-    ``finished`` is false in the answer if the engine was stopped after ``seconds``. Raises
-    :class:`NotCheckedError` if the engine raises it. Raises :class:`UserError` if the engine raises another
-    error or returns no valid answer.
+    The engine gets :attr:`Problem.plain`. ``finished`` is false in the answer if the engine was stopped after
+    ``seconds``. Raises :class:`NotCheckedError` if the engine raises it. Raises :class:`UserError` if the
+    engine raises another error or returns no valid answer.
     """
     try:
         reply = ask_offered(offer, Deadline(seconds), problem.plain, objectives, forbidden, seconds)
@@ -51,6 +51,8 @@ def _validate_reply(
 
     Raises :class:`UserError` unless the reply has the form of an :class:`EngineAnswer`, names the first
     objectives of the question, and has distinct ids as units.
+
+    The name in the reply is ignored: the answer has the name of the offer.
     """
     try:
         _, optimized, units, finished = msgspec.convert(reply, tuple[Any, list[Any], Any, bool])

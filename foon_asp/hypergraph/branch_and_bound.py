@@ -1,9 +1,9 @@
 """Branch and cut for the cheapest derivation, over the linear relaxation of hitting all landmarks.
 
 At each node of the search tree, some actions are used and some are forbidden. The preconditions of used
-actions are targets, too, and used actions cost nothing more. Cuts that an LP solution violates are added as
-in :mod:`foon_asp.hypergraph.cost_partition`. A cut is valid at every node at which it contains a target, so
-all nodes share their cuts.
+actions are additional targets, and used actions cost nothing more. Cuts that an LP solution violates are
+added as in :mod:`foon_asp.hypergraph.cost_partition`. A cut is valid at every node at which it contains a
+target, so all nodes share their cuts.
 
 Integers alone close a node: a cost partition or a cut with an empty landmark. The weights of the partition
 are rounded so that they add up to at most the cost of each action. The floats of HiGHS only guide the search.
@@ -105,7 +105,7 @@ class Branching:
         self._relaxation.add_whole_cuts(cuts)
 
     def search(self, effort: int, expired: Callable[[], bool]) -> Iterator[None]:
-        """Search the tree of nodes, the least bound first, until all nodes are closed.
+        """Search the tree of nodes in the order of their bounds, least first, until all nodes are closed.
 
         Yields ``None`` after each new incumbent or bound, and once all nodes are closed. Ends early, with
         ``closed`` still false, in three cases: ``effort`` actions were looked at, ``expired`` returns true,
@@ -195,8 +195,10 @@ class Branching:
     def _close_or_branch(self, node: _Node, node_number: int, expired: Callable[[], bool]) -> bool:
         """Solve the relaxation at a node in rounds of cuts, and close the node or give it two children.
 
-        A node is closed if it is ``hopeless``, or if its bound is above the cutoff. Better derivations that
-        are found become the incumbent. Returns ``False`` if time or effort ran out first, else ``True``.
+        A node is closed if it is ``hopeless``, or if its bound is above the cutoff. If the node gets
+        children, both forbid the actions above the cutoff. Better derivations that are found become the
+        incumbent. Returns ``False`` if time or effort ran out first, else ``True``. Raises
+        :class:`UnsolvedError` if HiGHS fails.
 
         ``node_number``: the number of the node in the order of creation. Number 0 is the root, which gets
         more rounds. The primal heuristic is called at the root and at every few nodes.
@@ -262,10 +264,11 @@ class Branching:
         return True
 
     def _rounded_derivation(self, cutter: Cutter, lp_values: Any, node: _Node) -> set[int]:
-        """Record the LP solution, rounded to 0 and 1, as a derivation, and return its columns.
+        """Round an LP solution to a derivation, record the derivation, and return its columns.
 
-        If it does not reach all targets, add a cut that it violates to the relaxation, and return the empty
-        set.
+        The derivation has the used actions and those of LP value above 1/2, without forbidden actions. It
+        becomes the incumbent if it is better. If it does not reach all targets, a cut that it violates is
+        added to the relaxation, and the empty set is returned.
         """
         chosen = node.used.union(self._np.flatnonzero(lp_values > 0.5).tolist()) - node.forbidden
         self.effort -= len(cutter.actions)
@@ -277,13 +280,16 @@ class Branching:
         return set(chosen)
 
     def _record_derivation(self, actions: set[int]) -> None:
-        """Make these actions, which form a derivation, the incumbent if they cost less than it."""
+        """Make a derivation the incumbent if it costs less; without an incumbent, less than ``total``."""
         total = sum(self._costs[i] for i, a in enumerate(self._actions) if a in actions)
         if total < self._total:
             self._total, self.incumbent = total, frozenset(actions)
 
     def _try_guesses(self, lp_values: Any, node: _Node) -> None:
-        """Replace the incumbent by a better derivation, if the primal heuristic proposes one."""
+        """Replace the incumbent by a better derivation, if the primal heuristic proposes one.
+
+        Derivations with actions that the relaxation lacks are ignored. ``effort`` is lowered.
+        """
         self.effort -= 2 * len(self._actions)
         solution = dict(zip(self._actions, lp_values.tolist(), strict=True))
         for derivation in self._guess(solution, {self._actions[a] for a in node.forbidden}):
@@ -291,7 +297,10 @@ class Branching:
                 self._record_derivation(set(derivation))
 
     def _separate(self, cutter: Cutter, lp_values: Any, node: _Node, expired: Callable[[], bool]) -> bool:
-        """Add cuts with disjoint landmarks that an LP solution violates; return whether any was added."""
+        """Add cuts with disjoint landmarks that an LP solution violates; return whether any was added.
+
+        The actions looked at are subtracted from ``effort``, and ``lp_values`` stay as they are.
+        """
         budget = min(self.effort, tuning.RELAXATION.cuts * len(cutter.actions))
         added, looks = self._relaxation.separate([cutter], node.used, lp_values.copy(), budget, expired)
         self.effort -= looks
@@ -300,7 +309,8 @@ class Branching:
     def _raise_bound(self, node: _Node) -> None:
         """Round the LP duals to weights of rows, which prove a bound of the node.
 
-        If they raise its bound, or it has no weights yet, they are stored in the node.
+        If the weights raise the bound, or the node has no weights yet, they are stored in the node. The bound
+        of the node never falls.
         """
         reduced_costs = self._costs_in_parts.copy()
         used_cost = sum(self._costs[a] for a in node.used) * PARTS
@@ -319,7 +329,7 @@ class Branching:
         """Return an array of the reduced cost of each action at a node, in parts.
 
         The reduced cost is the cost minus the weights of the open cuts whose landmark has the action. A cut
-        is open if its landmark has no used action.
+        is open if its landmark has no used action. The reduced cost of a forbidden action may be below 0.
         """
         reduced_costs = self._costs_in_parts.copy()
         for row, weight in self._open_cuts(node):

@@ -21,11 +21,11 @@ def coprime_base(numbers: Iterable[int]) -> list[int]:
         number = remaining.pop()
         if number == 1:
             continue
-        for i, other in enumerate(base):
-            divisor = math.gcd(number, other)
+        for i, factor in enumerate(base):
+            divisor = math.gcd(number, factor)
             if divisor > 1:
                 del base[i]
-                remaining += [divisor, *Fraction(number, other).as_integer_ratio()]
+                remaining += [divisor, *Fraction(number, factor).as_integer_ratio()]
                 break
         else:
             base.append(number)

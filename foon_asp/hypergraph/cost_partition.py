@@ -171,7 +171,8 @@ class CostPartitioning:
     def _make_cutters(self, graph: Hypergraph) -> tuple[list[Cutter], list[Cutter]]:
         """Return a list of cutters for one target each, and a list with one cutter for all other targets.
 
-        A target has its own cutter if at most half of the actions are relevant to it. If there are no other
+        A target has its own cutter if at most half of the actions are relevant to it. A single target has no
+        cutter of its own, nor has any target once a budget of effort is used up. If there are no other
         targets, the second list is empty.
         """
         count, targets = len(self._relaxation.actions), self._cutter.targets

@@ -123,7 +123,7 @@ class Covering:
     def _run(self, options: dict[str, bool | str | float], expired: Callable[[], bool]) -> None:
         """Run HiGHS with these options, for at most ``tuning.RELAXATION.run_seconds``.
 
-        Ends early when ``expired`` returns true.
+        Ends early when ``expired`` returns true. The options stay set.
         """
         self._set_options(options | {"time_limit": self._highs.getRunTime() + tuning.RELAXATION.run_seconds})
         run(self._highs, expired)

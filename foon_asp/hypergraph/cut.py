@@ -31,7 +31,8 @@ class Cutter:
 
     ``targets``: the targets that are not initial.
     ``actions``: the relevant actions. They can run and lead to a target.
-    ``hopeless``: a cut with an empty landmark if a target cannot be reached, else ``None``.
+    ``hopeless``: a cut with an empty landmark if a target cannot be reached, else ``None``. If there is such
+    a cut, ``actions`` is empty, and of the methods only :meth:`widen` may be called.
 
     Landmarks contain every crossing action that is not forbidden.
 
@@ -93,7 +94,7 @@ class Cutter:
         )
 
     def cut(self, keep: Iterable[int], order: Iterable[int]) -> Cut | None:
-        """Return a cut with a small landmark, which has no action of ``keep``.
+        """Return a cut with a small landmark that has no action of ``keep``.
 
         Grows a set of actions that does not reach all targets: first by ``keep``, then by the actions of
         ``order`` one by one. An action with which all targets would be reached is refused. The landmark
@@ -149,7 +150,10 @@ class Cutter:
         """
 
         def most_consumed(action: int) -> int | None:
-            """Return the precondition of a crossing action to add; ``None`` if ``members`` has the action."""
+            """Return the unreached precondition with the most consumers.
+
+            Return ``None`` if ``members`` has the action.
+            """
             if action in members:
                 return None
             lacking = (o for o in self._graph.needs[action] if not reached[o])
@@ -158,7 +162,7 @@ class Cutter:
         return self._extend_to_cut({target}, most_consumed)
 
     def _extend_to_cut(self, inside: set[int], needed: Callable[[int], int | None]) -> Cut:
-        """Extend a set of objects, ``inside``, in place; return it as a cut with its landmark.
+        """Extend the set ``inside`` of objects in place; return it as a cut with its landmark.
 
         For each crossing action, ``needed`` returns a precondition to add to the set. If ``needed`` returns
         ``None``, the action stays in the landmark.
@@ -198,7 +202,7 @@ class _Growth:
         self._targets = len(cutter.targets)
 
     def reaches_targets_with(self, actions: Iterable[int]) -> bool:
-        """Admit actions until one is refused; return whether all targets are reached with that one.
+        """Admit actions until one is refused; return whether one was, since it would reach all targets.
 
         Also return ``True`` if there are no targets. After ``True``, this object must not be used any more.
         """

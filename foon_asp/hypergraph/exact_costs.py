@@ -61,8 +61,8 @@ class ExactCosts:
         """Return these costs with ``price * counts(unit)`` added to the cost of each unit.
 
         If the price is a fraction, all costs are multiplied by its denominator. Actions that take kitchen
-        items have no price. If there is a ``limit``, a search by these costs ends as soon as a lower bound
-        reaches the limit, or a tree costs less than it.
+        items have no price. With a ``limit``, a search by these costs ends early: as soon as a lower bound
+        reaches the limit, or a tree costs less.
         """
         units, costs = self._units, copy(self)
         numerator, costs._multiplier = Fraction(price).as_integer_ratio()
@@ -108,7 +108,7 @@ class ExactCosts:
         return self._problem.figures(objective, (a for a in actions if a < self._units))
 
     def __call__(self, action: int) -> int:
-        """Return the cost of an action."""
+        """Return the cost of an action, its price included; costs are cached."""
         cost = self._cache.get(action)
         if cost is None:
             cost = self._multiplier * sum(
@@ -195,11 +195,11 @@ class ExactCosts:
         return [(objective, self._scaled_cost(objective, action)) for objective in self._objectives]
 
     def unscale(self, objective: Objective, figure: int) -> int | Fraction:
-        """Return ``figure``, a sum of scaled costs by an additive objective, in the unit of the objective."""
+        """Return a sum of scaled costs by an additive objective, ``figure``, in the unit of the objective."""
         return figure if objective.row.whole else Fraction(figure, self._denominators[objective])
 
     def is_logarithm(self, figure: int, product: Fraction) -> bool:
-        """Return whether ``figure``, a sum of rounded logarithms, is ``-log(product)`` up to rounding."""
+        """Return whether a sum of rounded logarithms, ``figure``, is ``-log(product)`` up to rounding."""
         return abs(figure - _logarithm(product.denominator) + _logarithm(product.numerator)) < _ROUNDED
 
     def rate(self, action: int) -> Fraction:
@@ -235,7 +235,10 @@ class _Vectors:
         self._costs, self._coordinates = costs, coordinates
 
     def vector(self, action: int) -> list[int]:
-        """Return the cost of an action as a vector; its rate has the exponent 1, other rates have 0."""
+        """Return the cost of an action as a vector; its rate has the exponent 1, other rates have 0.
+
+        A rate of 1 has no coordinate, so all exponents are 0.
+        """
         vector: list[int] = []
         for objective, figure in self._costs.scaled_costs(action):
             if multiplies(objective):

@@ -166,15 +166,15 @@ def solve_exactly(matrix: Matrix, right_sides: Mapping[int, Vector]) -> dict[int
         unknown, pivot = row.popitem()
         pivots.append((number, unknown, pivot))
         waiting.remove(number)
-        for rival in waiting:
-            other = rows[rival]
-            if unknown in other:
-                factor = other.pop(unknown) / pivot
+        for other_number in waiting:
+            other_row = rows[other_number]
+            if unknown in other_row:
+                factor = other_row.pop(unknown) / pivot
                 for u, value in row.items():
-                    other[u] = other.get(u, _ZERO) - factor * value
-                    if not other[u]:
-                        del other[u]
-                sides[rival] = _subtract_multiple(sides[rival], factor, sides[number])
+                    other_row[u] = other_row.get(u, _ZERO) - factor * value
+                    if not other_row[u]:
+                        del other_row[u]
+                sides[other_number] = _subtract_multiple(sides[other_number], factor, sides[number])
     solution: dict[int, Vector] = {}
     for number, unknown, pivot in reversed(pivots):
         right_side = sides[number]

@@ -21,8 +21,8 @@ def extend_tree(
     """Return the actions of a tree for the goals, together with the actions of an extension.
 
     The extension follows h_add; actions of the tree cost nothing in it. It is looked for among the actions
-    nearest to the required sets, and then in a restricted subproblem of at most ``max_actions`` actions.
-    Returns ``None`` if no extension is found.
+    nearest to the required sets, and then in a restricted subproblem of at most ``max_actions`` actions. The
+    result may have redundant actions. Returns ``None`` if no extension is found.
     """
     required_graph = _graph_of_required(graph)
     remaining_cost = _cost_without(tree, cost)

@@ -91,7 +91,7 @@ def _object_landmarks(graph: Hypergraph, tracked_count: int, expired: Callable[[
 
     It is a greatest fixpoint (Keyder, Richter and Helmert 2010). The landmarks of an object are the object
     itself and the landmarks that all its achievers share. The landmarks of an achiever are those of its
-    preconditions. If time is up, all bit sets are empty.
+    preconditions. Initial and unreachable objects have empty bit sets. If time is up, all bit sets are empty.
     """
     own = [1 << o if o < tracked_count else 0 for o in range(graph.size)]
     landmarks: list[int | None] = [None] * graph.size

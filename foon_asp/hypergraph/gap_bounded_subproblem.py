@@ -98,7 +98,7 @@ class Subproblem:
         return tree | {self.graph.units + o for o in needed & self.problem.kitchen}
 
     def nearest_units(self, min_units: int) -> frozenset[int]:
-        """Return the units among the actions nearest to the goals by reduced cost.
+        """Return the units among the ``remaining`` actions nearest to the goals by reduced cost.
 
         The search ends when ``min_units`` actions are found. These may include actions that take kitchen
         items.
@@ -134,8 +134,8 @@ class Subproblem:
         Let the gap be ``limit`` minus the bound of the cuts. The reduced costs of such a tree add up to at
         most the gap. So an action is excluded if its derivation has a greater reduced cost. Unless trees may
         be redundant, the path from the action to a goal is added to the derivation. Then new cuts are found
-        among the remaining actions, as long as many are excluded. If time is up, the superset is larger.
-        It is empty if cuts prove that there is no such tree.
+        among the remaining actions, as long as many are excluded. If time is up, the superset is larger. The
+        result is empty if cuts prove that there is no such tree.
 
         Raises ``KeyboardInterrupt`` if the search for cuts is interrupted.
         """

@@ -38,7 +38,8 @@ class GoalGraph(Hypergraph):
         """Return a graph in which each required set has at most ``max_achievers`` units, for estimates.
 
         The units with the fewest non-initial preconditions stay. Among units with equally many, the cheapest
-        stay. The achievers of other objects do not change.
+        stay. The achievers of other objects do not change. Without required sets, the graph itself is
+        returned.
         """
 
         def sort_key(action: int) -> tuple[int, int, int]:
@@ -55,7 +56,8 @@ class GoalGraph(Hypergraph):
 def graph_of(problem: Problem, objectives: Iterable[Objective]) -> GoalGraph:
     """Return the graph of a problem under a list of objectives.
 
-    It has actions that take kitchen items only if an objective counts these.
+    It has actions that take kitchen items only if an objective counts these. Goals in the kitchen are left
+    out. If an objective counts kitchen items, a unit that makes such an item has no such add effect.
     """
     network, kitchen, restriction = problem.network, problem.kitchen, problem.restriction
     units, size = len(network), len(network.objects)

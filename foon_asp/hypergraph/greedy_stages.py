@@ -95,7 +95,7 @@ def is_proved_by(task: Task, gap: Gap, cuts: Cuts) -> bool:
 def search_neighbourhood(task: Task, gap: Gap, cuts: Cuts, thorough: bool) -> Gap:
     """Look for a better tree among the candidates of small reduced cost; return the gap with it.
 
-    If none is found, returns the same object ``gap``. ``thorough`` is as for :func:`improve_locally`.
+    If no better tree is found, ``gap`` itself is returned. ``thorough`` is as for :func:`improve_locally`.
     """
     costs = task.costs
     assert costs is not None

@@ -62,25 +62,27 @@ def compute_h_values(
             buckets.setdefault(price(action), []).append(action)
     h_values = list(buckets)
     heapify(h_values)
-    costs: dict[int, int] = {}
-    maker: dict[int, int] = {}
+    h_objects: dict[int, int] = {}
+    best_achievers: dict[int, int] = {}
     h_actions: dict[int, int] = {}
-    nobody: list[int] = []
+    no_consumers: list[int] = []
     while h_values:
         h_value = heappop(h_values)
         for action in buckets[h_value]:  # grows while it is walked through, where actions cost nothing
             h_actions[action] = h_value
             for o in gives[action]:
-                if o in costs or o in start:
+                if o in h_objects or o in start:
                     continue
-                costs[o] = h_value
-                maker[o] = action
-                for consumer in consumers.get(o, nobody):
+                h_objects[o] = h_value
+                best_achievers[o] = action
+                for consumer in consumers.get(o, no_consumers):
                     count = missing[consumer] - 1
                     missing[consumer] = count
                     if count:
                         continue
-                    before = sum([costs[n] for n in needs[consumer] if n in costs]) if h_add else h_value
+                    before = (
+                        sum([h_objects[n] for n in needs[consumer] if n in h_objects]) if h_add else h_value
+                    )
                     total = price(consumer) + before
                     bucket = buckets.get(total)
                     if bucket is None:
@@ -88,4 +90,4 @@ def compute_h_values(
                         heappush(h_values, total)
                     else:
                         bucket.append(consumer)
-    return Derivations(costs, maker, h_actions)
+    return Derivations(h_objects, best_achievers, h_actions)

@@ -59,8 +59,9 @@ def run(highs: Any, expired: Callable[[], bool], has_integers: bool = False) -> 
     """Run HiGHS on its model; return whether it ended before time was up.
 
     ``expired`` returns whether time is up, and ``has_integers`` tells whether the model has integer
-    variables. If time was up, the current solution can be read. Raises ``KeyboardInterrupt`` if HiGHS does
-    not stop when time is up. After that, ``highs`` must not be used.
+    variables. A large model, or one with integer variables, is run in a thread of its own. If time was up,
+    the current solution can be read. Raises ``KeyboardInterrupt`` if HiGHS does not stop when time is up.
+    After that, ``highs`` must not be used.
     """
     if has_integers or highs.getNumCol() + highs.getNumRow() > RUN.small_size:
         return _Run(highs, expired).wait()
@@ -88,7 +89,8 @@ class _Run:
     def wait(self) -> bool:
         """Run HiGHS until it ends or time is up; return whether it ended by itself.
 
-        Raises ``KeyboardInterrupt`` if HiGHS does not stop within ``RUN.end_seconds`` after time is up.
+        Ctrl-C stops HiGHS as well, and is passed on. Raises ``KeyboardInterrupt`` if HiGHS does not stop
+        within ``RUN.end_seconds`` after time is up.
         """
         import highspy  # noqa: PLC0415 (slow to import, so only when it is there already)
 

@@ -15,8 +15,8 @@ if TYPE_CHECKING:  # few questions need it
 def irredundant_subset(graph: GoalGraph, tree: Collection[int], cost: Callable[[int], int]) -> set[int]:
     """Return an irredundant subset of a tree, by removing redundant actions, expensive ones first.
 
-    All actions of the tree have to be able to run. Actions that best achievers by h_add do not use are
-    removed first, all at once.
+    All actions of the tree have to be able to run, and together they have to reach the goals. Actions that
+    best achievers by h_add do not use are removed first, all at once.
     """
     support = Support(graph, tree, cost)
     waiting = [(-cost(action), action) for action in support.actions]
@@ -42,8 +42,9 @@ def trees_by_lp_values(
 ) -> Iterator[set[int]]:
     """Yield an irredundant tree that follows h_add and one that follows h_max, both guided by LP values.
 
-    For the h-values, the cost of an action is multiplied by 1 minus its LP value. The trees have no action of
-    ``without``. Yields nothing if there is no such tree.
+    For the h-values, the cost of an action is multiplied by 1 minus its LP value. Each action has to have
+    one, unless it is in ``without``. The trees have no action of ``without``. Yields nothing if there is no
+    such tree.
     """
     allowed = [a for a in actions if a not in without]
 
@@ -106,8 +107,8 @@ def perturbation_search(
     In the other half, a random part of the current tree costs nothing, and sometimes only a random part of
     the other actions is allowed. A tree that costs no more than the current tree replaces it.
 
-    Ends when a tree costs at most ``sufficient_cost``, or time is up. Also ends when each action was looked
-    at ``tries`` times since the last improvement.
+    ``random_number`` returns numbers from 0 to 1. Ends when a tree costs at most ``sufficient_cost``, or time
+    is up. Also ends when each action was looked at ``tries`` times since the last improvement.
     """
     best = current_tree = tree
     total = sum(map(cost, tree))
@@ -156,7 +157,7 @@ def improve_locally(
     total = sum(map(cost, best))
 
     def try_derived_tree(actions: Collection[int], price: Callable[[int], int], h_add: bool) -> None:
-        """Derive a tree at some prices, and keep an irredundant subset of it if it is the best so far."""
+        """Derive a tree at some prices; if an irredundant subset of it is cheaper, make it ``best``."""
         nonlocal best, total
         derived = compute_h_values(graph, actions, price, h_add).tree(graph, graph.goals)
         if derived is not None:

@@ -78,7 +78,7 @@ class _Level:
         self.clear_zone()
 
     def clear_zone(self) -> None:
-        """Start an empty zone."""
+        """Start an empty zone without a frontier; ``cut`` becomes the earlier cut."""
         self.zone: set[int] = set()
         self.frontier: dict[int, None] = {}
         self.cut = self.earlier_cut
@@ -146,7 +146,7 @@ def landmark_cuts(
     Also ends when ``expired`` returns true. If a target cannot be reached, the result is ``hopeless``. After
     ctrl-C, nothing is raised, and the result is ``interrupted``.
 
-    Targets take turns, the greatest h-value first, so that the cuts of one target do not use up the costs
+    Targets take turns, beginning with the greatest h-value. So the cuts of one target do not use up the costs
     that others need. The set of objects of reduced cost 0 only grows, so the time is linear in the parts of
     the graph that cuts touch.
     """
@@ -247,8 +247,9 @@ class _Search:
     def _grow_zone(self, level: _Level, outer_zones: set[int]) -> list[int] | None:
         """Grow the zone of a level through actions of reduced cost 0, and return its new objects.
 
-        Actions that need an object of ``outer_zones`` are skipped. Return ``None`` if all preconditions of an
-        action of reduced cost 0 are free. Then the zone has to be cleared.
+        The zone and the frontier of the level are changed in place. Actions that need an object of
+        ``outer_zones`` are skipped. Return ``None`` if all preconditions of an action of reduced cost 0 are
+        free. Then the zone has to be cleared.
         """
         needs, achievers, reduced_costs = self._graph.needs, self._graph.makers, self.reduced_costs
         zone, frontier = level.zone, level.frontier

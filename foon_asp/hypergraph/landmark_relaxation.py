@@ -98,8 +98,8 @@ class LandmarkRelaxation:
         """Add cuts that an LP solution violates; return the numbers of cuts added and of actions looked at.
 
         ``cutters`` are asked one after the other. Landmarks are disjoint, and have no action of ``used``.
-        ``lp_values``, an array of the LP value of each action, is changed in place. Ends when no cut is left,
-        ``budget`` actions were looked at, or ``stopped`` returns true.
+        ``lp_values`` is an array of the LP value of each action. It is changed in place. Ends when no cut is
+        left, ``budget`` actions were looked at, or ``stopped`` returns true.
         """
         added = looks = 0
         for cutter in cutters:
@@ -124,10 +124,10 @@ class LandmarkRelaxation:
     def feasible_weights(self, dual_values: Iterable[tuple[int, float]], capacity: Any) -> dict[int, int]:
         """Return for each row a feasible weight, in parts: its dual, rounded and limited by ``capacity``.
 
-        ``dual_values`` are pairs of a row and its dual. ``capacity`` is an array of the cost of each action,
-        in parts. Weights are subtracted from it in place, so that reduced costs remain in it. If costs remain
-        on all actions of a landmark, its weight is then raised. The weights add up to a lower bound, whatever
-        the duals are.
+        ``dual_values`` are pairs of a row and its dual. Negative and infinite duals count as 0. ``capacity``
+        is an array of the cost of each action, in parts. Weights are subtracted from it in place, so that
+        reduced costs remain in it. If costs remain on all actions of a landmark, its weight is then raised.
+        The weights add up to a lower bound, whatever the duals are.
         """
         scale = self.greatest_cost * PARTS
         rounded_duals = {row: round(Fraction(w) * scale) if 0 < w < math.inf else 0 for row, w in dual_values}
@@ -148,8 +148,8 @@ def _subgraph(
 ) -> tuple[Hypergraph, list[int], list[int]]:
     """Return the graph of the given actions, and for each of its objects the number in the whole graph.
 
-    The third value are the targets in the new graph. Its objects are the targets and the non-initial
-    preconditions of the actions, and none of them is initial.
+    The third value is the list of the targets in the new graph. The objects of the new graph are the targets
+    and the non-initial preconditions of the actions, and none of them is initial.
     """
     targets, start = tuple(targets), graph.start
     objects = sorted({o for a in actions for o in graph.needs[a] if o not in start}.union(targets))

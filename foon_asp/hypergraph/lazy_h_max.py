@@ -15,7 +15,8 @@ def lazy_h_max_test(
     The h_max is that of ``allowed`` actions at their reduced costs. :func:`compute_h_values` computes h_max
     of all objects at once. The returned function goes backwards from one object instead, and prunes by the
     limit. With a low limit, it looks at a small part of a large network. It returns ``True`` without proof if
-    it would go too deep or take too long. It keeps bounds between calls.
+    it would go too deep or take too long. It keeps bounds between calls. Initial objects are within any
+    limit.
     """
     needs, achievers, start = graph.needs, graph.makers, graph.start
     lower_bounds: dict[int, float] = {}  # on the h_max of objects
@@ -25,7 +26,8 @@ def lazy_h_max_test(
     def is_within(o: int, limit: float, depth: int = tuning.CUTS.lazy_depth) -> bool:
         """Return whether the h_max of an object is at most a limit, and record what this implies.
 
-        Preconditions are looked at up to this ``depth`` of recursion.
+        Preconditions are looked at up to this ``depth`` of recursion. Beyond it, and once the budget is used
+        up, the result is ``True`` without proof.
         """
         nonlocal budget
         if lower_bounds.get(o, 0) > limit:

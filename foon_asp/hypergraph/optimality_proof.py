@@ -6,7 +6,7 @@ the dual of the hitting set relaxation. Landmarks are added as long as the LP so
 Helmert 2010; Haslum, Slaney and Thiébaux 2012 for the hitting sets).
 
 A limit on a resource is one more row of the relaxation. An action that consumes the resource may then carry
-more weight, and the weight of the limit times its amount is subtracted from the bound.
+more weight. In return, the weight of the limit times its amount is subtracted from the bound.
 """
 
 import math
@@ -124,8 +124,8 @@ class Prover:
     def prove(self, derivation: Iterable[int], cases: Cases = None) -> Proof | None:
         """Return a proof that no derivation costs less than this one; ``None`` if no proof is found in time.
 
-        Known cuts are tried first. If they do not suffice, the proof branches on ``cases``, the nested cases
-        of an earlier search. Raises :class:`CheaperError` if a cheaper derivation is found.
+        Known cuts are tried first. If they do not suffice, the proof branches on ``cases``. These are the
+        nested cases of an earlier search. Raises :class:`CheaperError` if a cheaper derivation is found.
         """
         try:
             goal, nothing = self._cost_of(derivation), frozenset[int]()
@@ -143,8 +143,9 @@ class Prover:
     def relax(self, derivation: Iterable[int]) -> tuple[Packing, Vector] | None:
         """Return the optimal cost partition of the relaxation, before any branching, and its lower bound.
 
-        The relaxation may exceed limits, at a cost far above that of ``derivation``. The lower bound is
-        rounded up. Return ``None`` if the targets cannot be reached, time is up, or exact arithmetic fails.
+        The relaxation may exceed limits, at a cost far above that of ``derivation``. This argument has no
+        other effect. The lower bound is rounded up. Return ``None`` if the targets cannot be reached, time is
+        up, or exact arithmetic fails.
         """
         nothing: frozenset[int] = frozenset()
         barred = self._barred_actions(nothing, self._forbidden).values()
@@ -299,6 +300,8 @@ class Prover:
     ) -> tuple[Proof | None, Sequence[Cut]]:
         """Return a proof of ``goal`` without exact linear programming, and the cuts looked at.
 
+        Cuts whose landmark has a used action are left out.
+
         The proof is ``None`` if all attempts fail. They are made in this order:
         1. a greedy cost partition over ``known_cuts``,
         2. reduced-cost fixing by this partition; ``others`` proves the goal without the fixed actions,
@@ -306,7 +309,7 @@ class Prover:
         4. :func:`prove_by_branching`, if ``at_root`` is true.
 
         All costs are multiples of ``step``. If it is 0, only the first attempt is made. If ``without_lp`` is
-        true, the first two are.
+        true, only the first two are made.
         """
         targets = set(cutter.targets)
         known_cuts = [cut for cut in known_cuts if not targets.isdisjoint(cut)]
@@ -402,7 +405,7 @@ class Prover:
         return CostFixing(tuple(sorted(fixed)), packing._replace(rounded=0), proof) if fixed else proof
 
     def _landmark_actions(self, proof: Proof) -> Iterator[int]:
-        """Yield the actions that cross the cuts of a proof, also fixed and forbidden ones."""
+        """Yield the actions that cross the cuts of a proof, also fixed and forbidden ones, with repeats."""
         for objects in {cut.objects for cut in cuts_of(proof)}:
             yield from self._landmark_of(frozenset(objects))
 
@@ -433,13 +436,13 @@ class Prover:
         widened = cache(partial(self._widen, cutter))
 
         def widen_packing(packing: Packing) -> Packing:
-            """Return a cost partition with widened cuts, and with vectors as weights."""
+            """Return a cost partition with widened cuts; weights in steps become vectors of costs."""
             weights = [(widened(cut.objects), (weight[0] * step,)) for cut, weight in packing.weights]
             _, rounded = self.round_up(self._order.total(weight for _, weight in weights))
             return Packing(tuple(weights), rounded=rounded)
 
         def widen_proof(proof: Proof) -> Proof:
-            """Return a proof with widened cuts, and with vectors as weights."""
+            """Return a proof with widened cuts; weights in steps become vectors of costs."""
             if isinstance(proof, Branch):
                 return Branch(proof.action, widen_proof(proof.without), widen_proof(proof.using))
             if isinstance(proof, Hopeless):
@@ -488,8 +491,8 @@ class Prover:
 class _NodeRelaxation:
     """The relaxation at one node of the branching.
 
-    It has a column for each action of the cutter and for the excess over each limit, and a row for each limit
-    and each cut.
+    It has a column for each action of the cutter, and one for the excess over each limit. It has a row for
+    each limit and for each cut.
 
     ``goal``: the bound to be proved. The excess over a limit costs 1000 times as much.
     ``lp_values``: the LP values of the columns in the last solution.
@@ -550,8 +553,9 @@ class _NodeRelaxation:
     def relax(self, enough: Vector | None) -> ExactOptimum | None:
         """Add cuts until the bound is ``enough``, or no cut is found that the LP solution violates.
 
-        ``enough``: the bound that suffices; ``None`` for no such bound. Returns the exact optimum of the
-        rows. Returns ``None`` if exact arithmetic fails. Raises :class:`_GivenUpError` if time is up.
+        ``enough``: the bound that suffices; ``None`` for no such bound. The last LP solution is recorded in
+        ``lp_values``. Returns the exact optimum of the rows. Returns ``None`` if exact arithmetic fails.
+        Raises :class:`_GivenUpError` if time is up.
         """
         order = self._prover._order
         wanted = math.inf if enough is None else self._prover.as_float(enough)
@@ -596,7 +600,7 @@ class _NodeRelaxation:
     def most_fractional_action(self) -> int | None:
         """Return the action whose LP value is nearest to 1/2; of equally near ones, the most expensive.
 
-        Return ``None`` if all LP values are integers.
+        Return ``None`` if all LP values are integers up to rounding.
         """
         fractional = [
             (abs(x - 0.5), -self._floats[column], self._actions[column])
@@ -613,7 +617,10 @@ class _NodeRelaxation:
         return sorted({action for action, x in lp_values if round(x)} | self._used)
 
     def _separate(self) -> bool:
-        """Add cuts with disjoint landmarks that the last LP solution violates; return whether it has any."""
+        """Add cuts with disjoint landmarks that the last LP solution violates.
+
+        Return whether it violates any. At most ``tuning.RELAXATION.cuts`` cuts are added at a call.
+        """
         import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
 
         count = len(self._actions)

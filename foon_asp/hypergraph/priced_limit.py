@@ -45,7 +45,8 @@ def search_within_limit(
     within the limit by at most the price times the limit, so lower bounds carry over. If many units remain at
     this price, lower prices that rise up to it are tried.
 
-    Returns ``None`` if it stays open whether a tree within the limit exists.
+    If time is up, fewer units are excluded. Returns ``None`` if it stays open whether a tree within the limit
+    exists. Raises ``KeyboardInterrupt`` if a search is interrupted.
     """
     first_result = any_within_limit(subproblem, row, expired)
     if first_result is None or first_result.tree is None:
@@ -162,7 +163,8 @@ def any_within_limit(
     """Search for any tree within the limit of ``row``, by minimizing the sum of its amounts.
 
     The search ends at the first tree within the limit. Returns ``WithinLimit(None)`` if a bound proves that
-    there is no such tree. Returns ``None`` if neither is achieved.
+    there is no such tree. Returns ``None`` if neither is achieved. Raises ``KeyboardInterrupt`` if the search
+    is interrupted.
     """
     units_cost = ExactCosts(subproblem.problem, (Objective.UNITS,), subproblem.remaining)
     limit = units_cost.strict_upper_bound * (row.bound + 1)

@@ -61,7 +61,10 @@ Cases = tuple[int, "Cases", "Cases"] | None
 
 
 def cuts_of(proof: Proof) -> Iterator[Cut]:
-    """Yield the cuts of a proof, in all of its branches; a cut may be yielded more than once."""
+    """Yield the cuts of a proof, in all of its branches; a cut may be yielded more than once.
+
+    The end of a branch that breaks a rule has no cut.
+    """
     waiting = [proof]
     while waiting:
         step = waiting.pop()

@@ -28,8 +28,8 @@ def neighbourhood(
 
     ``limit``: the greatest reduced cost; ``math.inf`` for no limit.
     ``h_actions``: the h-values of actions. With them, the first action of a path counts with its h-value
-    instead of its reduced cost, since no action of its derivation is on the path. Actions without an h-value
-    are excluded.
+    instead of its reduced cost. This is valid, since no action of its derivation is on the path. Actions
+    without an h-value are excluded.
     ``enough``: the number of actions at which the search ends. Then the result is no superset.
     ``min_reduced_cost``: a number that no reduced cost is below.
     ``reachable``: a test as that of :func:`lazy_h_max_test`, used instead of ``h_actions``. It excludes an

@@ -121,9 +121,10 @@ def reduce(
     ``listener``: receives trees and bounds.
     ``guard``: returns a context in which computations are interrupted when time is up, as by ctrl-C.
     ``solved``: answers to questions that differ only in goals and removed units. They speed up this question,
-    and its answer is added to them.
+    and its answer is added to them. They are ignored if :func:`can_use_solved_goals` returns false.
 
-    Raises ``KeyboardInterrupt`` if it is interrupted before there is a tree.
+    Raises ``KeyboardInterrupt`` if it is interrupted before there is a tree. A later interruption is caught,
+    and recorded in the result.
     """
     with without_garbage_collection():
         with guard():
@@ -190,6 +191,8 @@ def reduce_at_costs(
     and those of trees better than the incumbent.
     ``max_actions``: with ``below``, a number of actions. If more remain, and the first cuts exclude hardly
     any action, the reduction ends after these cuts.
+
+    Interruptions are treated as by :func:`reduce`.
     """
     presolve_tuning = tuning.PRESOLVE._replace(branching_budget=0, landmark_actions=math.inf)
     if below:  # clingo gets the remaining actions with an incumbent
@@ -200,7 +203,10 @@ def reduce_at_costs(
         task = replace(task, costs=costs, coarse_costs=costs, below=below, scope=subproblem.remaining)
 
         def fix_before_rounds(task: Task, gap: Gap, h_values: HValues) -> Stage:
-            """Exclude candidates above the cutoff first, and run all rounds only if few enough remain."""
+            """Exclude candidates above the cutoff first, and run all rounds only if few enough remain.
+
+            If ``below`` is 0, or there are at most ``max_actions`` candidates, all rounds are run at once.
+            """
             if below and len(gap.candidates) > max_actions:
                 before = len(gap.candidates)
                 gap, cuts = greedy.raise_bound(task, gap, h_values, greedy.h_max_guide(task, gap))
@@ -427,7 +433,8 @@ class _Presolve:
     def run_guarded(self, step: Callable[[], None]) -> None:
         """Run a step under the guard, and record in ``ended`` whether it ended by itself.
 
-        ``KeyboardInterrupt`` ends the step. It is caught if there is a tree, else passed on.
+        ``KeyboardInterrupt`` ends the step. It is caught if there is a tree, or if the step was complete;
+        else it is passed on.
         """
         self.ended = False
         try:
@@ -448,7 +455,8 @@ class _Presolve:
     def _run_course(self, course: Course, known_tree: Collection[int]) -> None:
         """Do what :meth:`run` does, without the guard.
 
-        If there is no tree, ``gap`` stays ``None``. If the task has no reductions, the stages are not run.
+        Trees are compared at rough costs, and the first incumbent is made irredundant. If there is no tree,
+        ``gap`` stays ``None``. If the task has no reductions, the stages are not run.
         """
         task, stages = self.task, course.near_goals
         opening = _first_tree_near_goals(task)
@@ -467,7 +475,11 @@ class _Presolve:
         """Run all rounds under the guard, from a gap of ``solved`` if it has one; record the answer in it."""
 
         def run_from_shared_gap() -> None:
-            """Run the rounds from the gap of ``solved``, or from a first tree if there is no such gap."""
+            """Run the rounds from the gap of ``solved``, or from a first tree if there is no such gap.
+
+            If ``solved`` has exact costs, the task gets them. At the end, the answer is recorded in
+            ``solved``.
+            """
             costs = solved.costs
             if costs is not None:
                 self.task = replace(self.task, costs=costs)
@@ -485,7 +497,10 @@ class _Presolve:
         self.run_guarded(run_from_shared_gap)
 
     def extend_or_run(self) -> None:
-        """Run all rounds; with required sets, first try to extend trees for the goals alone."""
+        """Run all rounds; with required sets, first try to extend trees for the goals alone.
+
+        This is tried only with the reduction ``dear``. If it leads to a gap, the rounds are not run again.
+        """
         restriction = self.task.problem.restriction
         if restriction is not None and restriction.required and Reduction.DEAR in self.task.reductions:
             _presolve_by_extension(self)
@@ -501,7 +516,10 @@ class _Presolve:
             self.report(gap)
 
     def report(self, gap: Gap) -> None:
-        """Make a gap the current one; report a new incumbent and a greater bound to the listener."""
+        """Make a gap the current one; report a new incumbent and a greater bound to the listener.
+
+        The bound of the first gap, and bounds without exact costs, are not reported.
+        """
         before, self.gap = self.gap, gap
         if before is None or gap.incumbent is not before.incumbent:
             self._listener.tree(self._units(gap.incumbent))
@@ -513,7 +531,10 @@ class _Presolve:
         return frozenset(a for a in actions if a < self.task.graph.units)
 
     def result(self, redundant: bool = False) -> Reduced:
-        """Return the result; ``redundant`` tells whether trees of its subproblem may be redundant."""
+        """Return the result; ``redundant`` tells whether trees of its subproblem may be redundant.
+
+        If the gap is proved, or the run was interrupted, the units are only the units of the incumbent.
+        """
         task, gap = self.task, self.gap
         if gap is None:
             return Reduced(None, (), False, None, 0, None)
@@ -537,7 +558,8 @@ def _presolve_by_extension(presolve: _Presolve) -> None:
     tree costs no more than the best tree for the goals alone, it is optimal. Otherwise all rounds are run
     over the candidates.
 
-    The result is in ``presolve.gap``, which stays ``None`` if the relaxation does not help.
+    The result is in ``presolve.gap``, which stays ``None`` if the relaxation does not help. Bounds of the
+    relaxation are reported, its trees are not.
     """
     task = presolve.task
     graph, restriction = task.graph, task.problem.restriction
@@ -555,7 +577,7 @@ def _presolve_by_extension(presolve: _Presolve) -> None:
     def extend() -> None:
         """Extend the best tree for the goals alone, and set the gap of ``presolve``; fill ``h_values``.
 
-        Does nothing if no extension is found.
+        Does nothing if no extension is found. Raises ``KeyboardInterrupt`` if time is up.
         """
         tree = extend_tree(task.thin_graph, gap.incumbent, costs, len(graph.needs) // 4)
         if tree is None:

@@ -31,7 +31,7 @@ NONE: frozenset[Reduction] = frozenset()
 def parse_reductions(text: str) -> frozenset[Reduction]:
     """Return the reductions of ``all``, ``safe``, ``none`` or a list of names as in ``forced,dear``.
 
-    Raises :class:`UserError` for an unknown name.
+    Spaces around the names of a list are ignored. Raises :class:`UserError` for an unknown name.
     """
     named = {"all": ALL, "safe": SAFE, "none": NONE}
     if text in named:

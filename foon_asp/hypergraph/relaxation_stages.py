@@ -27,9 +27,9 @@ from foon_asp.hypergraph.task import Task
 def partition_costs(task: Task, gap: Gap) -> Stage:
     """Raise the bound by optimal cost partitions, follow LP solutions to trees, and exclude candidates.
 
-    If many candidates were excluded, the relaxation begins anew over the remaining ones. Ends when few are
-    excluded, few remain, the gap is proved, time is up, or branching is faster. Yields each gap that it
-    reaches.
+    If many candidates were excluded, the relaxation begins anew over the remaining ones. Ends when few
+    candidates are excluded, few remain, the gap is proved, time is up, or branching is faster. Yields each
+    gap that it reaches.
     """
     costs, graph, limits = task.costs, task.graph, task.tuning
     assert costs is not None
@@ -75,8 +75,9 @@ def follow_solution(task: Task, gap: Gap, partition: CostPartition, looks: int) 
     """Look for better trees that follow an LP solution, then apply its cost partition.
 
     If the LP solution and the trees use few actions, branch and bound over these looks for better trees.
-    Otherwise, a perturbation search does. ``looks`` is the budget: how often each candidate may be looked at.
-    Yields each gap that it reaches.
+    Otherwise, a perturbation search does. Neither is run if the bound of the partition reaches the cost of
+    the incumbent. ``looks`` is the budget: how often each candidate may be looked at. Yields each gap that it
+    reaches.
     """
     costs, graph = task.costs, task.graph
     assert costs is not None
@@ -106,9 +107,9 @@ def follow_solution(task: Task, gap: Gap, partition: CostPartition, looks: int) 
 def apply_partition(task: Task, gap: Gap, partition: CostPartition) -> Gap:
     """Raise the bound by a cost partition, exclude candidates by reduced costs, and prune dominated ones.
 
-    The bound is rounded up, since costs are whole numbers. If it equals the cost of the incumbent, nothing
-    was rounded in costs, and only better trees are wanted, the gap is marked as proved. The partition and its
-    tight cuts become evidence. Candidates are excluded only by the reductions of the task.
+    The bound is rounded up, since costs are whole numbers. The gap is marked as proved in one case: the bound
+    equals the cost of the incumbent, no cost was rounded, and only better trees are wanted. The partition and
+    its tight cuts become evidence. Candidates are excluded only by the reductions of the task.
     """
     costs, total, evidence = task.costs, task.incumbent_cost(gap), gap.evidence
     assert costs is not None
@@ -133,8 +134,9 @@ def search_among(
 ) -> Stage:
     """Look for a better tree among a few actions by branch and bound (sub-MIP heuristic).
 
-    ``cuts`` are the cuts to begin with, each by its objects. ``effort`` is the budget, in actions looked at.
-    Yields the gap with each better tree. Its bound does not change.
+    Actions that cannot run without others are left out. ``cuts`` are the cuts to begin with, each by its
+    objects. ``effort`` is the budget, in actions looked at. Yields the gap with each better tree. Its bound
+    does not change.
     """
     graph, costs = task.graph, task.costs
     assert costs is not None

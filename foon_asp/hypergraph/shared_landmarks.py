@@ -76,7 +76,8 @@ class SharedLandmarks:
         ``tree``: a tree of the question. The incumbent of the gap is this tree or a better one.
 
         Cuts become evidence only if the gap is not closed by the bound alone, since they are many and large.
-        If HiGHS fails, the gap has the bound 0, and all actions that are not excluded as candidates.
+        New landmarks are kept for later questions. If HiGHS fails, the gap has the bound 0, and all actions
+        that are not excluded as candidates.
         """
         result = self._relax(task, excluded, tree)
         candidates = self._actions - excluded

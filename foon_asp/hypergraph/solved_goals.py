@@ -40,7 +40,8 @@ class SolvedGoals:
     def gap(self, task: Task) -> Gap | None:
         """Return the gap of a question from shared landmarks.
 
-        Return ``None`` if landmarks are not shared yet, or the question has no tree.
+        New landmarks are kept for later questions. Return ``None`` if landmarks are not shared yet, or the
+        question has no tree.
         """
         if self._landmarks is None or self._derivations is None:
             return None

@@ -54,7 +54,8 @@ class Support:
         """Remove an action, and the actions that are of no use without it.
 
         Returns the remaining actions that achieve an object that is no longer in use. They may be redundant
-        now. If the other actions do not reach the goals, nothing changes, and the result is ``None``.
+        now. If the other actions do not reach the goals, the tree does not change, and the result is
+        ``None``.
         """
         missing = {action: 0}  # number of lost preconditions of each action derived by it
         lost: set[int] = set()

@@ -50,11 +50,17 @@ class Task:
         return sum(map(self.costs, tree)) < self.incumbent_cost(gap)
 
     def only_better(self, gap: Gap) -> bool:
-        """Return whether only trees better than the incumbent are wanted."""
+        """Return whether only trees better than the incumbent are wanted.
+
+        This is so with the reduction ``bounds``, unless the incumbent costs less than ``below``.
+        """
         return Reduction.BOUNDS in self.reductions and self.incumbent_cost(gap) >= self.below
 
     def cutoff(self, gap: Gap) -> int:
-        """Return the greatest cost of trees that are still wanted, plus the doubt of costs."""
+        """Return the greatest cost of trees that are still wanted, plus the doubt of costs.
+
+        With the reduction ``bounds``, trees that cost as much as the incumbent are not wanted.
+        """
         assert self.costs is not None
         return (
             max(self.incumbent_cost(gap), self.below)

@@ -13,7 +13,7 @@ class PresolveTuning(NamedTuple):
 
     ``lazy_actions``: a number of actions. If a network has more, only those near the goals are looked at
     first.
-    ``first_actions``: among how many actions, the nearest to the goals, the first tree is looked for.
+    ``first_actions``: how many actions, nearest to the goals, are searched for the first tree.
     ``required_achievers``: how many units of each required set are looked at while trees are looked for.
     ``neighbourhood_actions``: how many actions a neighbourhood has in which better trees are looked for.
     ``easy_actions``: a number of candidates. If there are fewer, clingo is faster than a thorough search for
@@ -130,7 +130,7 @@ class SharedTuning(NamedTuple):
     """How the goals of a network share landmarks and trees.
 
     ``violated_landmarks``: how many known landmarks are added for one LP solution, at most.
-    ``unions``: how many unions of trees, the cheapest, are made irredundant to find a first tree.
+    ``unions``: how many of the cheapest unions of trees are made irredundant to find a first tree.
     """
 
     violated_landmarks: int = 40

@@ -14,11 +14,11 @@ Ids = tuple[tuple[int, ...], ...]
 class ContainerRule(StrEnum):
     """The rule that decides which inputs of a unit are preconditions.
 
-    ``STRICT``: all inputs are preconditions, and all outputs are add effects.
-    ``IMPLIED``, the rule of the published searches: some containers are skipped. A skipped container is a
-    utensil with exactly one ingredient, if this ingredient is also an input of the unit and has a relation to
-    the utensil (in, on or at it). It is no precondition. If the unit also lists it as an output, it is no add
-    effect either, since nothing made it before.
+    ``STRICT``: all inputs are preconditions, and all outputs are add effects. ``IMPLIED``, the rule of the
+    published searches: some containers are skipped. A skipped container is a utensil with exactly one
+    ingredient. This ingredient is also an input of the unit, and is in, on or at the utensil. It is no
+    precondition. If the unit also lists it as an output, it is no add effect either, since nothing made it
+    before.
 
     Example:
         >>> [str(rule) for rule in foon_asp.ContainerRule]
@@ -102,7 +102,10 @@ def _preconditions_and_add_effects(
 
 
 def _nodes_at_level(nodes: Iterable[ObjectNode], level: int) -> set[ObjectNode]:
-    """Return nodes with only the parts that count at a level: at level 1, only their labels."""
+    """Return nodes with only the parts that count at a level: at level 1, only their labels.
+
+    Nodes that differ only in other parts become one.
+    """
     return {node_at_level(node, level) for node in nodes}
 
 

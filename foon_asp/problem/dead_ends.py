@@ -100,6 +100,7 @@ def _unreachable_achievers(
     """Return the achievers of each unreachable node on paths to the goals, by node id.
 
     The nodes are listed depth-first, backward from the goals. A unit that also needs the node is no achiever.
+    A node without achievers has an empty tuple.
     """
     needs = problem.needs
     achievers: dict[int, tuple[Blocked, ...]] = {}
@@ -131,7 +132,8 @@ def _sort_achievers(
 ) -> tuple[Blocked, ...]:
     """Return the achievers of a node, sorted; the unit with the id ``cheapest`` comes first.
 
-    The others are in ascending order of the sum of the h-values of the nodes that they lack.
+    The others are in ascending order of the sum of the h-values of the nodes that they lack, then of id. If
+    ``cheapest`` is ``None``, all are in this order.
     """
 
     def key(blocked: Blocked) -> tuple[bool, int, int]:

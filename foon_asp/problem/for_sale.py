@@ -76,8 +76,9 @@ class Shop:
     def offers(self, roots: Sequence[RootCause]) -> Iterator[tuple[Offer, list[int]]]:
         """Yield all offers except ``priced``, from the smallest set to the largest, each with its node ids.
 
-        Kitchen items are in no offer. ``roots`` are the causes of the problem's dead ends; the nodes of their
-        cycles are in the offer ``cycle``.
+        Kitchen items are in no offer. Offers from which the goals cannot be made are yielded as well.
+        ``roots`` are the causes of the problem's dead ends; the nodes of their cycles are in the offer
+        ``cycle``.
         """
         problem = self._problem
         outside_kitchen = [o for o in range(len(problem.network.objects)) if o not in problem.kitchen]

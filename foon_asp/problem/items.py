@@ -61,7 +61,7 @@ def fate(
     ``inputs`` and ``outputs`` are all inputs and outputs of the unit, including any that a container rule
     skips. ``declared`` maps labels and nodes to whether the user declared that they stay. A declaration
     overrides all other reasons, and one for a node overrides one for its label. If an output has the label of
-    the input but is another node, the unit changes the input, which is then used up.
+    the input but is another node, the unit changes the input. Then the input is used up.
     """
     stays = declared.get(node, declared.get(node.label))
     if stays is not None:
@@ -166,7 +166,8 @@ class UsedUp:
 
         If a node is an input and an output, the unit makes only the copies that it puts out beyond those that
         it takes. It uses up only those that it takes beyond the ones it puts out. An input that the user
-        declared as used up is used up in full.
+        declared as used up is used up in full. A node without an amount counts as one copy. Nodes of which no
+        copy is used up or made are left out of the effects.
 
         Parameters:
             network: The network of the unit.

@@ -36,8 +36,8 @@ def exact_number(number: Number, quantity: str) -> Fraction:
 def unit_price(number: Number, quantity: str) -> Fraction:
     """Return a price as an exact fraction.
 
-    Raises :class:`UserError` for a value that is no finite number, for a price below 0, and for a fraction
-    whose numerator or denominator has more than 1,000 digits. Its message names the ``quantity``.
+    Raises :class:`UserError` for a value that is no finite number, and for a price below 0. The numerator and
+    the denominator may have at most 1,000 digits. The message of the error names the ``quantity``.
     """
     price = exact_number(number, quantity)
     if price < 0 or max(price.numerator, price.denominator) >= 10**_MAX_DIGITS:

@@ -249,7 +249,8 @@ def multiplies(objective: Objective) -> bool:
 def parse_objectives(names: Iterable[str], measures: Collection[str] = ()) -> tuple[Objective, ...]:
     """Return the lexicographic list of objectives with these names, the most important first.
 
-    Each of the ``names`` may be a comma-separated list. ``measures`` are the names of user measures.
+    Each of the ``names`` may be a comma-separated list; spaces around names are ignored. ``measures`` are the
+    names of user measures.
 
     Raises :class:`UserError` for an unknown name, and for an objective that is listed twice.
     """

@@ -120,7 +120,7 @@ class Origin(Protocol):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Problem:
-    """A planning problem: goals, a kitchen and a container rule, over a network.
+    """A planning problem over a network, with goals, a kitchen and a container rule.
 
     :meth:`foon_asp.Foon.problem` makes one from names.
 
@@ -201,6 +201,8 @@ class Problem:
     def at_hand(self, node: ObjectNode) -> bool:
         """Return whether an object node is in the kitchen.
 
+        It is ``False`` if the network lacks the node.
+
         Parameters:
             node: The object node.
         """
@@ -226,8 +228,8 @@ class Problem:
     def about(self, units: Iterable[FunctionalUnit]) -> "Problem":
         """Return this problem over a network that also has the given units.
 
-        If the network is part of a store, those of the units that the store has are read from it. Otherwise
-        this problem itself is returned.
+        If the network is part of a store, the units are read from the store; units that it lacks are left
+        out. Otherwise this problem itself is returned.
 
         Parameters:
             units: The units.
@@ -251,7 +253,8 @@ class Problem:
         """Return a variation of this problem: with other goals, container rule, kitchen, rates or prices.
 
         Nothing is read or indexed again, except the part of a store that the new problem needs in addition.
-        Whether items are used up does not change.
+        ``None`` keeps what this problem has. Whether items are used up does not change. If they are, a new
+        kitchen comes with its own stock.
 
         Parameters:
             goals: The new goals: one object node or several, by name or as :class:`ObjectNode`.
@@ -302,7 +305,7 @@ class Problem:
 
     @cached_property
     def makers(self) -> Sequence[tuple[int, ...]]:
-        """The achievers of each object node: the units that make it under the container rule, in order.
+        """The achievers of each object node: the units that make it under the container rule, ascending.
 
         A restriction removes units, and appends each of its required sets as the achievers of an additional
         node.
@@ -329,7 +332,7 @@ class Problem:
         motions_with_amounts = {unit.motion for unit in self.amounts}
 
         def flow(unit: int) -> Flow:
-            """Return the flow of a unit, with the amounts that are stated for it."""
+            """Return the flow of a unit with its stated amounts; without such amounts, that in ``plain``."""
             has_amounts = network.motions[unit] in motions_with_amounts
             amounts = self.amounts.get(network.unit(unit)) if has_amounts else None
             if amounts is None:
@@ -385,8 +388,8 @@ class Problem:
     def copies_taken(self, plan: Iterable[int]) -> dict[int, int]:
         """Return the fewest copies of each consumable kitchen item with which a plan can be executed.
 
-        The numbers are by object node id; the mapping is empty if items last. If the item is a goal, the
-        copies that are wanted in the end count, too.
+        The numbers are by object node id; the mapping is empty if items last. An item that the plan does not
+        need has 0. If the item is a goal, the copies that are wanted in the end count as well.
 
         Parameters:
             plan: The ids of the units, in the order of execution.
@@ -623,7 +626,7 @@ class Problem:
         """Return the costs of a tree or, where items are used up, of a plan.
 
         Each unit of a tree counts once. Each execution of a plan counts, and so does each copy of a
-        consumable kitchen item that the plan requires.
+        consumable kitchen item that the plan requires. Objectives for which data are missing have no value.
 
         Parameters:
             units: The ids of the units; of a plan in the order of execution, with repeats.
@@ -663,6 +666,8 @@ class Problem:
 
     def figures(self, objective: Objective, units: Iterable[int]) -> Iterable[int | Fraction]:
         """Return the cost of each of some units, in their order; see :meth:`figure`.
+
+        Figures of built-in objectives are computed, and errors raised, only when the result is iterated over.
 
         Parameters:
             objective: The objective.
@@ -723,7 +728,8 @@ def for_each_goal(problem: Problem) -> list[Problem]:
 def count_unpriced(units: Iterable[tuple[str, Sequence[Source]]]) -> list[Unpriced]:
     """Return the number of units without a price for each motion, with the source of the first of them.
 
-    ``units`` has the motion and the sources of each unit without a price.
+    ``units`` has the motion and the sources of each unit without a price. For a unit without sources, the
+    file of the source is ``-``.
     """
     by_motion: dict[str, Unpriced] = {}
     for motion, sources in units:

@@ -107,7 +107,10 @@ class Purchases:
 
 
 def _add_purchases(network: Network, wares: Sequence[int]) -> Network:
-    """Return a network with an additional last unit for each ware, which makes the ware out of nothing."""
+    """Return a network with an additional last unit for each ware; the unit makes the ware out of nothing.
+
+    The public numbers of the new units follow the last public number. The result has no level-3 network.
+    """
     count, numbers = len(wares), network.unit_numbers
     if numbers:
         numbers += tuple(range(numbers[-1] + 1, numbers[-1] + 1 + count))

@@ -158,7 +158,10 @@ def units_relevant_to_plans(problem: Problem, reached: Reached) -> set[int]:
 
 
 def kitchen_needed(problem: Problem) -> list[int]:
-    """Return the ascending ids of kitchen items that a tree for the goals can need, or that are goals."""
+    """Return the ascending ids of kitchen items that a tree for the goals can need, or that are goals.
+
+    Units that cannot be executed count as well.
+    """
     units, _ = search_backward(problem.goals, problem.makers, problem.needs, problem.kitchen)
     needed = {o for unit in units for o in problem.needs[unit]}.union(problem.goals)
     return sorted(needed & problem.kitchen)
@@ -182,7 +185,7 @@ def follow_achievers(
 ) -> set[int] | None:
     """Return the units that make objects out of ``start``; ``maker`` has one achiever for each object.
 
-    Return ``None`` if an object that is needed has no achiever.
+    The units are in no order. Return ``None`` if an object that is needed has no achiever.
     """
     units: set[int] = set()
     stack = list(objects)
