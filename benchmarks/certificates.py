@@ -25,7 +25,7 @@ from foon_asp.comparison.many import makeable
 from foon_asp.hypergraph.covering import Covering
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
 from foon_asp.proof import proved_checker
-from foon_asp.proof.certificate_file import read_certificate
+from foon_asp.proof.certificate_json import read_certificate
 from foon_asp.proof.verifier import verify
 from foon_asp.text.data_folder import find_data, read_data
 

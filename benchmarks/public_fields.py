@@ -41,7 +41,7 @@ from foon_asp.certificate.certificate import subject_of
 from foon_asp.comparison.many import makeable
 from foon_asp.deadline import Deadline
 from foon_asp.problem import Objective, Problem, reach
-from foon_asp.proof.certificate_file import read_certificate
+from foon_asp.proof.certificate_json import read_certificate
 from foon_asp.proof.verifier import verify
 
 T = TypeVar("T")

@@ -55,7 +55,7 @@ from foon_asp.planning.strips_task import StripsTask
 from foon_asp.planning.task_files import read_task
 from foon_asp.problem import Problem, executable_order
 from foon_asp.proof import verifier as proof
-from foon_asp.proof.certificate_file import read_certificate
+from foon_asp.proof.certificate_json import read_certificate
 from foon_asp.questions.relax import Relaxed, solve_relaxation
 
 OURS, GREEDY = "foon-asp", "greedy"

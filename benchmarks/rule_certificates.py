@@ -25,7 +25,7 @@ from foon_asp.comparison.many import makeable
 from foon_asp.deadline import Deadline
 from foon_asp.network import UnitPrices
 from foon_asp.problem import Objective, Problem, levels
-from foon_asp.proof.certificate_file import read_certificate
+from foon_asp.proof.certificate_json import read_certificate
 from foon_asp.proof.verifier import verify
 from foon_asp.questions.certificate_text import bound_text
 from foon_asp.rules.passed_constraint import given_constraint

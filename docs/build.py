@@ -16,8 +16,8 @@ from pathlib import Path
 import foon_asp
 from foon_asp.cli.main import main as foon_asp_command
 from foon_asp.cli.verbs import GROUPS, VERBS
+from foon_asp.json_layout import json_text
 from foon_asp.results.schema_file import schema
-from foon_asp.text.json_text import json_text
 
 ROOT = Path(__file__).resolve().parents[1]
 MIRRORED = (

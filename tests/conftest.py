@@ -15,8 +15,8 @@ from hypothesis import HealthCheck, settings
 from hypothesis.internal.conjecture import providers
 
 from foon_asp.cli.main import main
+from foon_asp.json_layout import schema_name
 from foon_asp.results.schema_file import schema
-from foon_asp.text.json_text import schema_name
 
 ROOT = Path(__file__).resolve().parents[1]
 CORPUS = ROOT.parent / "shared" / "corpus"

@@ -12,10 +12,10 @@ from foon_asp.asp.settings import Settings
 from foon_asp.encoding.own_encodings import ENCODING_FILES, USED_UP, exact_success, is_own
 from foon_asp.encoding.stated import Loaded, Stated
 from foon_asp.errors import UserError
+from foon_asp.json_layout import json_line
 from foon_asp.problem import Problem
 from foon_asp.resources import encodings_folder
 from foon_asp.rules.passed_constraint import Constraint, LibraryUse, find_constraint
-from foon_asp.text.json_text import json_line
 
 if TYPE_CHECKING:  # clingo, which is not needed where no rule is added
     from foon_asp.encoding.encoding import Encoding

@@ -9,10 +9,10 @@ import msgspec
 from foon_asp.batch.answer_row import AnswerRow, Figures
 from foon_asp.batch.batch_question import Amounts, Goals
 from foon_asp.errors import UserError
+from foon_asp.json_layout import Json
 from foon_asp.problem import Objective
 from foon_asp.results.plain_values import plain
 from foon_asp.results.table_columns import csv_text, flat_row
-from foon_asp.text.json_text import Json
 from foon_asp.whole_file import write_whole
 
 TABLE_SUFFIXES: Final = (".csv", ".parquet")

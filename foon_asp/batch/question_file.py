@@ -10,11 +10,11 @@ import msgspec
 
 from foon_asp.batch.batch_question import BatchQuestion, OpenData
 from foon_asp.errors import UserError
+from foon_asp.json_layout import read_json
 from foon_asp.network import STARTING, Source, counted
 from foon_asp.problem import ITEMS, ContainerRule, parse_objectives
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 from foon_asp.text.json_list import json_fault
-from foon_asp.text.json_text import read_json
 from foon_asp.text.plain_file import read_plain_text
 
 _QUESTION_KEYS = BatchQuestion.__struct_fields__

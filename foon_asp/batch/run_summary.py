@@ -6,10 +6,10 @@ from collections.abc import Iterator, Sequence
 from typing import Self
 
 from foon_asp.batch.answer_row import AnswerRow
+from foon_asp.json_layout import schema_name
 from foon_asp.network import counted
 from foon_asp.results.document import Document, Unserialized
 from foon_asp.results.table import Block
-from foon_asp.text.json_text import schema_name
 
 
 class RunSummary(Document, frozen=True, kw_only=True, tag=schema_name("batch")):

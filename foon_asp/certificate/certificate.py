@@ -16,14 +16,14 @@ from foon_asp.hypergraph.cut import Cut
 from foon_asp.hypergraph.lexicographic import Vector
 from foon_asp.hypergraph.optimality_proof import CheaperError, Prover
 from foon_asp.hypergraph.proof_tree import Broken, Cases, CostFixing, Hopeless, Packing, Proof
+from foon_asp.json_layout import json_line
 from foon_asp.problem import Costs, Objective, OptionalData, Problem
-from foon_asp.proof.certificate_file import read_certificate
 from foon_asp.proof.certificate_header import TREE_FORM, Form, seal
+from foon_asp.proof.certificate_json import read_certificate
 from foon_asp.proof.certificate_subject import Subject
 from foon_asp.proof.refusal import LimitError, RefusedError
 from foon_asp.proof.verified_claim import Verified
 from foon_asp.proof.verify_plan import verify_any
-from foon_asp.text.json_text import json_line
 
 
 class NotBestError(Exception):

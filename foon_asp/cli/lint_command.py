@@ -13,6 +13,7 @@ from foon_asp.cli.output import terminal_width_and_colour, write_data, write_out
 from foon_asp.cli.output_file import check_outputs, refuse_inputs
 from foon_asp.cli.shown_diff import show_diff
 from foon_asp.errors import UserError
+from foon_asp.json_layout import json_text
 from foon_asp.linting.baseline import Baseline, check_replaceable
 from foon_asp.linting.catalog import CATALOG, unknown_code_message
 from foon_asp.linting.context import Context
@@ -27,7 +28,6 @@ from foon_asp.questions.result import Ending
 from foon_asp.report.rule_page import rule_page
 from foon_asp.results.plain_values import plain
 from foon_asp.text.diagnostics import Diagnostic
-from foon_asp.text.json_text import json_text
 from foon_asp.text.plain_file import plain_text, read_content
 from foon_asp.whole_file import utf_8, write_whole
 

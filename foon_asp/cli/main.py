@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from foon_asp import __version__
-from foon_asp.cli.ctrl_c import end_at_ctrl_c, raise_at_ctrl_c
+from foon_asp.cli.early_exit import end_at_ctrl_c, raise_at_ctrl_c
 from foon_asp.cli.exit_code import ExitCode, code_and_message
 from foon_asp.cli.output import flush_or_drop_output, safe_streams, show_remarks
 from foon_asp.cli.verbs import FIRST_VERBS, FOR_PROGRAMS, SHELL_REQUEST, VERBS, verb_command, write_verbs

@@ -5,8 +5,8 @@ import click
 from foon_asp.cli import shared_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.errors import UserError
+from foon_asp.json_layout import json_text, schema_name
 from foon_asp.results.schema_file import schema, schema_kinds
-from foon_asp.text.json_text import json_text, schema_name
 
 _DOCUMENT_KINDS = {"solve": "answer"}  # of verbs whose documents have another name
 

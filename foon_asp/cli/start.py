@@ -1,6 +1,6 @@
 """Entry point of the process: it handles ctrl-C before it imports the command line."""
 
-from foon_asp.cli.ctrl_c import end_at_ctrl_c
+from foon_asp.cli.early_exit import end_at_ctrl_c
 
 
 def main() -> None:

@@ -9,11 +9,11 @@ from foon_asp.asp import Settings
 from foon_asp.asp.assembly import rules_digest
 from foon_asp.comparison.comparison import Comparison
 from foon_asp.comparison.rows_file import RowForm
+from foon_asp.json_layout import Json, json_line
 from foon_asp.problem import Objective, Problem
 from foon_asp.proof.certificate_subject import Subject
 from foon_asp.results.plain_values import plain, read_plain
 from foon_asp.searches import Search, SearchSettings
-from foon_asp.text.json_text import Json, json_line
 
 
 def read_comparison(row: Json) -> Comparison:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import IO, Generic, NamedTuple, Self, TypeVar
 
 from foon_asp.errors import UserError
-from foon_asp.text.json_text import Json, json_line, read_json, schema_name
+from foon_asp.json_layout import Json, json_line, read_json, schema_name
 
 if sys.platform == "win32":
     import msvcrt

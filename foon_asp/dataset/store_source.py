@@ -13,10 +13,10 @@ from foon_asp.errors import UserError
 from foon_asp.network import DataAmounts, FunctionalUnit, Network, Source, UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Unpriced
 from foon_asp.store.cone import Cone
+from foon_asp.store.on_demand_network import TouchedNetwork
 from foon_asp.store.store import Store
 from foon_asp.store.stored_ids import StoredIds
 from foon_asp.store.stored_kitchen import StoredStartingKitchen
-from foon_asp.store.touched_network import TouchedNetwork
 from foon_asp.text.diagnostics import Diagnostic
 from foon_asp.text.object_list import ListedObject
 from foon_asp.text.stated_amounts import UnitAmount, apply_amount_table

@@ -10,6 +10,7 @@ from foon_asp.editor.edited_text import EditedText
 from foon_asp.editor.field import NAME_KINDS, Field, field_at
 from foon_asp.editor.json_rpc import ErrorCode, RequestError, parameter
 from foon_asp.errors import UserError
+from foon_asp.json_layout import Json
 from foon_asp.linting.names import Names
 from foon_asp.linting.noqa import silencing_comment
 from foon_asp.linting.sheet import Sheet
@@ -17,7 +18,6 @@ from foon_asp.network import Contents, ObjectNode, counted
 from foon_asp.text.data_folder import kitchen_file
 from foon_asp.text.diagnostics import InputError, Rename, Severity
 from foon_asp.text.formats import format_of
-from foon_asp.text.json_text import Json
 from foon_asp.text.line import Line, NameKind, StateLine, line_names
 from foon_asp.text.object_list import read_object_list
 from foon_asp.text.plain_file import split_lines

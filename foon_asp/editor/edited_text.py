@@ -6,8 +6,8 @@ from pathlib import Path
 from urllib.parse import unquote
 
 from foon_asp.editor.json_rpc import parameter
+from foon_asp.json_layout import Json
 from foon_asp.text.formats import format_of
-from foon_asp.text.json_text import Json
 from foon_asp.text.plain_file import split_lines
 
 

@@ -4,7 +4,7 @@ import contextlib
 from enum import IntEnum
 from typing import Any, BinaryIO, TypeVar
 
-from foon_asp.text.json_text import Json, json_line, read_json
+from foon_asp.json_layout import Json, json_line, read_json
 
 Value = TypeVar("Value")
 

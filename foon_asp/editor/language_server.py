@@ -17,7 +17,7 @@ from foon_asp.editor.json_rpc import (
     read_message,
     write_message,
 )
-from foon_asp.text.json_text import Json
+from foon_asp.json_layout import Json
 
 _CAPABILITIES = {
     "textDocumentSync": {"openClose": True, "change": 1},  # the whole text

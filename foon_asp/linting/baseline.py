@@ -8,8 +8,8 @@ from pathlib import Path
 from msgspec import Struct, ValidationError, convert
 
 from foon_asp.errors import UserError
+from foon_asp.json_layout import read_json, schema_name
 from foon_asp.text.diagnostics import Diagnostic
-from foon_asp.text.json_text import read_json, schema_name
 from foon_asp.text.plain_file import read_content
 
 

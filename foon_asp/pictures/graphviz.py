@@ -8,10 +8,10 @@ import subprocess
 from typing import Any
 
 from foon_asp.errors import UserError
+from foon_asp.json_layout import read_json
 from foon_asp.pictures.chart import missing_package_error
 from foon_asp.pictures.dot import BOXED_UNITS, FONT, dot_text, graph_text
 from foon_asp.pictures.drawing import Drawing
-from foon_asp.text.json_text import read_json
 
 MAX_UNITS = 10_000
 """Units of a network that is laid out, at most: 2,376 take 4 s, 9,504 take 30 s, 19,008 take 78 s."""

@@ -3,8 +3,8 @@
 import re
 from collections.abc import Iterator
 
+from foon_asp.json_layout import json_line
 from foon_asp.pictures.drawing import Box, Drawing, Role
-from foon_asp.text.json_text import json_line
 
 # By role: the brackets of a box and its style. Mermaid has no double borders: a goal's is thick.
 _ROLE_STYLES = {

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.escapes import UNSAFE
-from foon_asp.text.json_text import Json, json_line
+from foon_asp.json_layout import Json, json_line
 from foon_asp.whole_file import utf_8, write_whole
 
 WEB = Path(__file__).resolve().parent / "web"

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple, Self
 from msgspec import UNSET, UnsetType
 
 from foon_asp.errors import UserError
+from foon_asp.json_layout import read_json, schema_name
 from foon_asp.network import FunctionalUnit, Network, ObjectNode
 from foon_asp.planning.planning_task import PlanningTask, taking_action_name
 from foon_asp.problem import ITEMS, Objective, UsedUp
@@ -14,9 +15,8 @@ from foon_asp.results.document import AboutGoals
 from foon_asp.results.plain_values import fraction_text
 from foon_asp.results.values import Copies, Mention, Node, Value
 from foon_asp.results.values_of import copies_of, mention_of, named_node, node_of, question_fields
-from foon_asp.text.foon_json_layout import check_json
+from foon_asp.text.foon_json_indent import check_json
 from foon_asp.text.json_node import read_node_json
-from foon_asp.text.json_text import read_json, schema_name
 from foon_asp.text.plain_file import read_plain_text
 
 KIND = "pddl-map"

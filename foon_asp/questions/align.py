@@ -10,6 +10,7 @@ from foon_asp.dataset import read_dataset
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
 from foon_asp.foon import Foon
+from foon_asp.json_layout import schema_name
 from foon_asp.network import Edit, FunctionalUnit, Network, ObjectNode, StandInTable, counted
 from foon_asp.questions.posing import Command, pose_data
 from foon_asp.questions.question import TABLES, Kind, Option, question
@@ -19,9 +20,8 @@ from foon_asp.results.document import Unserialized
 from foon_asp.results.table import Block
 from foon_asp.results.values import Node, Value
 from foon_asp.results.values_of import named_node, node_of
-from foon_asp.standins.node_prices import NodePrices
+from foon_asp.standins.pair_prices import NodePrices
 from foon_asp.text.data_folder import find_data
-from foon_asp.text.json_text import schema_name
 from foon_asp.text.writer import write_units
 
 _WORD_EDITS = frozenset((Edit.WORD, Edit.SPELLING, Edit.LABEL))  # other words for the same object and place

@@ -10,6 +10,7 @@ from foon_asp.dataset.nearby import NearbyProblem, without_reading_more
 from foon_asp.dataset.nearby_optimum import near_goals
 from foon_asp.deadline import Deadline
 from foon_asp.hypergraph import SolvedGoals
+from foon_asp.json_layout import schema_name
 from foon_asp.problem import Objective, Problem, for_each_goal
 from foon_asp.questions.answer import Answer, answer_from_store
 from foon_asp.questions.caller import caller
@@ -21,7 +22,6 @@ from foon_asp.results.document import AboutGoals
 from foon_asp.results.figure_text import figure_text
 from foon_asp.results.table import Block, Cell, Table
 from foon_asp.results.values_of import question_fields
-from foon_asp.text.json_text import schema_name
 
 _ALWAYS = (Objective.UNITS, Objective.INPUTS, Objective.SUCCESS)  # columns; others where they are asked for
 _STYLES = {Status.OPTIMAL: "good", Status.INFEASIBLE: "bad"}

@@ -12,6 +12,7 @@ from foon_asp.encoding.clingo_run import run
 from foon_asp.encoding.fact_writer import write_distances
 from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.errors import BugError, UserError
+from foon_asp.json_layout import schema_name
 from foon_asp.network import counted
 from foon_asp.pictures.drawing import Drawing
 from foon_asp.pictures.notebook import page_bundle
@@ -35,7 +36,6 @@ from foon_asp.results.figure_text import costs_text
 from foon_asp.results.table import Block
 from foon_asp.results.values import CostedTree, Mention, Node, Value, step_lines, steps_not_in
 from foon_asp.results.values_of import costed_tree, mention_of, node_of, question_fields
-from foon_asp.text.json_text import schema_name
 
 
 class Way(Value, frozen=True):

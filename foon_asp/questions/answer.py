@@ -13,6 +13,7 @@ from foon_asp.asp import Outcome, Proof, Reporter, Settings, Status
 from foon_asp.asp.assembly import ReachOfRules, reach_of_rules
 from foon_asp.asp.optimum import solve
 from foon_asp.dataset.nearby_optimum import least_with_more, near_goals, solve_nearby
+from foon_asp.json_layout import schema_name
 from foon_asp.network import counted
 from foon_asp.problem import Costs, Objective, Problem, levels
 from foon_asp.problem.dead_ends import Cause
@@ -27,7 +28,6 @@ from foon_asp.results.figure_text import bound_text, costs_text, figure_text
 from foon_asp.results.table import Block
 from foon_asp.results.values import CostedTree, Figure, ListedConstraint, Node, Step, UsedUpRun, Value
 from foon_asp.results.values_of import question_fields, steps_of, used_up_of
-from foon_asp.text.json_text import schema_name
 from foon_asp.text.tables import Duration
 from foon_asp.text.writer import write_units
 

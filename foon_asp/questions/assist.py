@@ -8,6 +8,7 @@ from typing import Annotated, Unpack
 
 from foon_asp.asp import Outcome, Status
 from foon_asp.dataset.paths import File
+from foon_asp.json_layout import schema_name
 from foon_asp.network import counted
 from foon_asp.problem import Costs, Number, Objective, Problem, success_rate
 from foon_asp.questions.caller import caller
@@ -24,7 +25,6 @@ from foon_asp.results.figure_text import costs_text, success_text
 from foon_asp.results.table import Block, Table
 from foon_asp.results.values import Step, UsedUpRun, Value
 from foon_asp.results.values_of import question_fields, steps_of, used_up_of
-from foon_asp.text.json_text import schema_name
 from foon_asp.text.tables import RATES
 
 

@@ -9,6 +9,7 @@ from msgspec import UNSET, UnsetType, structs
 
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
+from foon_asp.json_layout import schema_name
 from foon_asp.network import FunctionalUnit, counted
 from foon_asp.pictures.drawing import Drawing
 from foon_asp.problem import Costs, Objective, Problem
@@ -27,7 +28,6 @@ from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.table import Block
 from foon_asp.results.values import ListedConstraint, UsedUpRun
 from foon_asp.results.values_of import question_fields
-from foon_asp.text.json_text import schema_name
 
 if TYPE_CHECKING:  # clingo and linear programs, which only rules and certificates need
     from foon_asp.asp import Settings

@@ -19,6 +19,7 @@ from foon_asp.comparison.summary import all_proved, summarize_comparisons
 from foon_asp.dataset.item_options import items_of
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
+from foon_asp.json_layout import Json, schema_name
 from foon_asp.pictures.comparison_chart import write_comparison_chart
 from foon_asp.problem import Problem
 from foon_asp.questions.caller import caller
@@ -43,7 +44,6 @@ from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.table import Block
 from foon_asp.results.values_of import question_fields
 from foon_asp.searches import Search, SearchSettings, search_names
-from foon_asp.text.json_text import Json, schema_name
 
 _ONE_TREE = "FOON text holds one tree: name one search (--search) and one goal (--goal)"
 

@@ -7,6 +7,7 @@ from foon_asp.asp import Status
 from foon_asp.comparison.comparison import MEASURED, Comparison, SearchResult
 from foon_asp.comparison.published_table import PublishedTable
 from foon_asp.comparison.summary import Summary
+from foon_asp.json_layout import Json
 from foon_asp.network import counted
 from foon_asp.problem import Objective, multiplies
 from foon_asp.proof.simulation import Verdict
@@ -14,7 +15,6 @@ from foon_asp.results.plain_values import plain
 from foon_asp.results.table import Block, Cell, Table
 from foon_asp.results.table_columns import flat_row
 from foon_asp.results.values import Figure
-from foon_asp.text.json_text import Json
 
 _HEADINGS = ("search", "units", "inputs", "success", "executes", "used up")
 _EXECUTES = {

@@ -3,11 +3,11 @@
 import shlex
 from collections.abc import Iterator
 
+from foon_asp.json_layout import schema_name
 from foon_asp.results.document import Document
 from foon_asp.results.table import Block
 from foon_asp.results.values import Value
 from foon_asp.rules.constraint_library import library_constraints
-from foon_asp.text.json_text import schema_name
 
 _NOT_SET = frozenset({'""', "#sup", "#inf"})
 

@@ -11,12 +11,12 @@ from foon_asp.encoding.encoding import read_encoding
 from foon_asp.engines import ClaimedAnswer, DisagreementError
 from foon_asp.engines.bare_clingo import ENGINE_OPTIONS
 from foon_asp.errors import UserError
+from foon_asp.json_layout import Json, json_text
 from foon_asp.problem import Problem
 from foon_asp.proof.certificate_subject import Subject
 from foon_asp.results.plain_values import exact_measures, plain
 from foon_asp.rules.passed_constraint import Constraint, LibraryUse, RuleText, find_constraint
 from foon_asp.text.exact_number import decimal_text
-from foon_asp.text.json_text import Json, json_text
 from foon_asp.text.unit_price_list import write_unit_prices
 from foon_asp.text.writer import write_units
 from foon_asp.whole_file import write_whole

@@ -7,9 +7,9 @@ from msgspec import Meta
 
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
+from foon_asp.json_layout import Json, schema_name
 from foon_asp.questions.result import Ending, NothingToDrawError, Result
 from foon_asp.results.table import Block
-from foon_asp.text.json_text import Json, schema_name
 
 _ANY_DOCUMENT = Meta(
     extra_json_schema={

@@ -7,6 +7,7 @@ from foon_asp.asp import Settings
 from foon_asp.asp.assembly import assemble
 from foon_asp.asp.reporter import Reporter
 from foon_asp.errors import UserError
+from foon_asp.json_layout import schema_name
 from foon_asp.network import Source
 from foon_asp.results.document import Document
 from foon_asp.results.table import Block
@@ -14,7 +15,6 @@ from foon_asp.results.values import Value
 from foon_asp.rules.passed_constraint import Constraint
 from foon_asp.rules.rule_analysis import Kind
 from foon_asp.rules.rules import ShownRule, Together
-from foon_asp.text.json_text import schema_name
 
 _KINDS = {
     Kind.FACT: "no unit decides it: it holds for every tree, or for none",

@@ -8,6 +8,7 @@ from msgspec import field
 
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
+from foon_asp.json_layout import schema_name
 from foon_asp.network import counted
 from foon_asp.planning.name_map import MapFile
 from foon_asp.planning.pddl_writer import domain_text, items_words, problem_text, scale_words
@@ -23,7 +24,6 @@ from foon_asp.questions.result import Result
 from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.table import Block
 from foon_asp.results.values_of import question_fields
-from foon_asp.text.json_text import schema_name
 from foon_asp.whole_file import write_whole
 
 FILES = ("domain.pddl", "problem.pddl", "map.json")

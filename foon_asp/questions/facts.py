@@ -4,11 +4,11 @@ from collections.abc import Mapping, Sequence
 
 from foon_asp.asp import Settings
 from foon_asp.asp.bare_program import printable_program
+from foon_asp.json_layout import schema_name
 from foon_asp.problem import Objective, Problem
 from foon_asp.results.document import AboutGoals
 from foon_asp.results.values_of import question_fields
 from foon_asp.rules.passed_constraint import Constraint
-from foon_asp.text.json_text import schema_name
 
 
 class Facts(AboutGoals, frozen=True, kw_only=True, tag=schema_name("facts")):

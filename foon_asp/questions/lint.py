@@ -12,6 +12,7 @@ from msgspec import structs
 from foon_asp.argument_checks import typed
 from foon_asp.dataset.paths import File, as_path
 from foon_asp.errors import UserError
+from foon_asp.json_layout import Json, json_text, schema_name
 from foon_asp.linting import linter
 from foon_asp.linting.baseline import read_baseline
 from foon_asp.linting.catalog import CATALOG, unknown_code_message
@@ -31,7 +32,6 @@ from foon_asp.results.table import Block, blocks_text
 from foon_asp.results.table_columns import flat_row
 from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.folder_files import foon_files
-from foon_asp.text.json_text import Json, json_text, schema_name
 
 
 class Linted(Result, frozen=True, kw_only=True, tag=schema_name("lint")):

@@ -8,6 +8,7 @@ from types import MappingProxyType
 from foon_asp.argument_checks import typed
 from foon_asp.dataset.paths import File, Files, as_path, as_paths
 from foon_asp.errors import UserError
+from foon_asp.json_layout import schema_name
 from foon_asp.network import Amounts, Network, NetworkBuilder, counted
 from foon_asp.network.near_units import units_with_one_difference
 from foon_asp.questions.result import Result
@@ -16,7 +17,6 @@ from foon_asp.results.table import Block
 from foon_asp.results.values_of import differences_of, listed_unit
 from foon_asp.text.data_folder import DataFiles, amounts_of_units, find_data
 from foon_asp.text.diagnostics import summarize
-from foon_asp.text.json_text import schema_name
 from foon_asp.text.merged_network import merged_text
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.unit_price_list import read_unit_prices

@@ -2,6 +2,7 @@
 
 from fractions import Fraction
 
+from foon_asp.json_layout import schema_name
 from foon_asp.pictures.whole_network import WholeNetwork
 from foon_asp.questions.alternatives import Alternatives
 from foon_asp.questions.answer import Answer
@@ -12,7 +13,6 @@ from foon_asp.questions.why_not import Explanation
 from foon_asp.results.document import Document
 from foon_asp.results.proof_cases import ProofCases
 from foon_asp.results.values import Value
-from foon_asp.text.json_text import schema_name
 
 
 class UnitRate(Value, frozen=True):

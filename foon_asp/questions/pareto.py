@@ -13,6 +13,7 @@ from foon_asp.asp.postconditions import Postconditions
 from foon_asp.asp.settings import Bounded
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
+from foon_asp.json_layout import schema_name
 from foon_asp.network import counted
 from foon_asp.problem import Costs, Objective, Problem, multiplies
 from foon_asp.questions.caller import caller
@@ -42,7 +43,6 @@ from foon_asp.results.values import (
     steps_not_in,
 )
 from foon_asp.results.values_of import costed_tree, question_fields
-from foon_asp.text.json_text import schema_name
 
 _MIN_OBJECTIVES, _MAX_OBJECTIVES = 2, 3
 

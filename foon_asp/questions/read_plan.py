@@ -8,6 +8,7 @@ from typing import Unpack
 from foon_asp.dataset.item_options import items_of
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
+from foon_asp.json_layout import schema_name
 from foon_asp.planning.name_map import name_map_of, read_name_map
 from foon_asp.planning.plan_file import PlanStep, read_plan_text
 from foon_asp.planning.planning_task import planning_task
@@ -22,7 +23,6 @@ from foon_asp.questions.question import Kind, Option, Role, question
 from foon_asp.questions.result import Ending
 from foon_asp.questions.tree import Tree
 from foon_asp.results.table import Block
-from foon_asp.text.json_text import schema_name
 from foon_asp.text.plain_file import read_plain_text
 
 

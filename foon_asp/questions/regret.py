@@ -14,6 +14,7 @@ from typing import Annotated, Any, Unpack
 from foon_asp.asp import Outcome, Reporter, Settings, Status, solve
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.errors import UserError
+from foon_asp.json_layout import schema_name
 from foon_asp.network.spelling import near_labels
 from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
 from foon_asp.questions.answer import Answer, WithAnswer
@@ -32,7 +33,6 @@ from foon_asp.results.figure_text import costs_text, success_text
 from foon_asp.results.table import Block
 from foon_asp.results.values import Measures, Mention, Node, Value
 from foon_asp.results.values_of import mention_of, node_of, question_fields
-from foon_asp.text.json_text import schema_name
 
 
 class Removal(StrEnum):

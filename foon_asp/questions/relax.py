@@ -11,6 +11,7 @@ from msgspec import structs
 from foon_asp.asp import Reporter, Settings, Status
 from foon_asp.dataset.paths import File, Files, as_paths
 from foon_asp.deadline import Deadline
+from foon_asp.json_layout import schema_name
 from foon_asp.network import counted
 from foon_asp.planning.strips_task import DERIVED, StripsTask
 from foon_asp.planning.task_files import read_task
@@ -25,7 +26,6 @@ from foon_asp.results.document import Unserialized
 from foon_asp.results.plain_values import fraction_text
 from foon_asp.results.table import Block
 from foon_asp.results.values import Value
-from foon_asp.text.json_text import schema_name
 from foon_asp.whole_file import write_whole
 
 if TYPE_CHECKING:

@@ -13,6 +13,7 @@ from foon_asp.certificate.coverage import Coverage
 from foon_asp.dataset import Dataset
 from foon_asp.dataset.paths import File
 from foon_asp.errors import BugError, UserError
+from foon_asp.json_layout import schema_name
 from foon_asp.network import FunctionalUnit, ObjectNode, StandInTable, counted
 from foon_asp.problem import Costs, Objective, Problem
 from foon_asp.proof.rule_meaning import ALL_STEPS
@@ -31,7 +32,6 @@ from foon_asp.results.table import Block
 from foon_asp.results.values import Node, Step
 from foon_asp.results.values_of import nodes_of, question_fields, steps_of
 from foon_asp.standins.repair import Repair
-from foon_asp.text.json_text import schema_name
 from foon_asp.text.writer import write_units
 from foon_asp.whole_file import write_whole
 

@@ -6,6 +6,7 @@ from typing import Self
 
 from msgspec import UNSET, UnsetType, field
 
+from foon_asp.json_layout import schema_name
 from foon_asp.planning.behaviour_tree import Branch, behaviour_tree_text
 from foon_asp.planning.robot_step import RobotStep, robot_steps
 from foon_asp.problem import Objective, Problem
@@ -13,7 +14,6 @@ from foon_asp.results.document import AboutGoals
 from foon_asp.results.values import UsedUpRun
 from foon_asp.results.values_of import question_fields, used_up_of
 from foon_asp.text.clip_times import ListedClips, listed_clips
-from foon_asp.text.json_text import schema_name
 from foon_asp.text.tables import Duration
 
 

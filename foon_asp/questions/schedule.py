@@ -12,6 +12,7 @@ from foon_asp.asp import Status
 from foon_asp.dataset.paths import File
 from foon_asp.errors import BugError, UserError
 from foon_asp.escapes import escaped
+from foon_asp.json_layout import schema_name
 from foon_asp.network import ALL_ONE, FunctionalUnit, counted
 from foon_asp.pictures.gantt import Gantt, time_text
 from foon_asp.planning.schedule_task import schedule_task
@@ -38,7 +39,6 @@ from foon_asp.results.timed_step import TimedStep, Tool
 from foon_asp.results.values import Value
 from foon_asp.results.values_of import lack_of, question_fields
 from foon_asp.text.clip_times import median_clips
-from foon_asp.text.json_text import schema_name
 from foon_asp.text.line import LineError
 from foon_asp.text.tables import (
     TOOLS,

@@ -7,6 +7,7 @@ from typing import Annotated, Any, Self, Unpack
 from msgspec import field
 
 from foon_asp.comparison.comparison import simulate_retrieval
+from foon_asp.json_layout import schema_name
 from foon_asp.pictures.drawing import Drawing
 from foon_asp.problem import Costs, Problem
 from foon_asp.proof.simulation import Simulation, Verdict
@@ -24,7 +25,6 @@ from foon_asp.results.values import Node, Step, UsedUpRun
 from foon_asp.results.values_of import node_of, question_fields, steps_of
 from foon_asp.searches import Ending as Searched
 from foon_asp.searches import Search
-from foon_asp.text.json_text import schema_name
 from foon_asp.text.writer import write_units
 
 _NO_TREE: Any = dict.fromkeys(("verdict", "as_listed", "in_any_order", "order", "used_up"))

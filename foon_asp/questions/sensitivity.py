@@ -7,6 +7,7 @@ from typing import Literal, Unpack
 from foon_asp.asp import Status, solve
 from foon_asp.asp.assembly import assemble
 from foon_asp.errors import UserError
+from foon_asp.json_layout import schema_name
 from foon_asp.network import counted
 from foon_asp.problem import Objective, Problem, success_rate
 from foon_asp.questions.answer import Answer, WithAnswer
@@ -23,7 +24,6 @@ from foon_asp.results.plain_values import fraction_text
 from foon_asp.results.table import Block, Table
 from foon_asp.results.values import CostedTree, Value, changed_motions, steps_not_in
 from foon_asp.results.values_of import costed_tree, question_fields
-from foon_asp.text.json_text import schema_name
 
 _SUCCESS = (Objective.SUCCESS,)
 

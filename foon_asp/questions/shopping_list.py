@@ -23,6 +23,7 @@ from foon_asp.encoding.fact_writer import write_for_sale, write_found_list
 from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.errors import BugError, UserError
 from foon_asp.hypergraph import SolvedGoals
+from foon_asp.json_layout import schema_name
 from foon_asp.network import ObjectNode, Source, counted
 from foon_asp.problem import Costs, Number, Objective, Problem, exact_number, levels
 from foon_asp.problem.dead_ends import dead_ends
@@ -46,7 +47,6 @@ from foon_asp.results.figure_text import costs_text
 from foon_asp.results.table import Block
 from foon_asp.results.values import Node, Value
 from foon_asp.results.values_of import node_as, question_fields
-from foon_asp.text.json_text import schema_name
 from foon_asp.text.line import LineError
 from foon_asp.text.line_parser import parse_name
 from foon_asp.text.tables import PRICES

@@ -12,6 +12,7 @@ from foon_asp.dataset.level_counts import statistics_by_level
 from foon_asp.dataset.paths import File
 from foon_asp.escapes import escaped
 from foon_asp.foon import Foon, load
+from foon_asp.json_layout import schema_name
 from foon_asp.network import Network, counted, starting_kitchen
 from foon_asp.network.statistics import MANY, Statistics, most_connected_labels, most_connected_objects
 from foon_asp.problem import DEFAULT_RULE, ContainerRule, UsedUp, container_rule, needed_inputs
@@ -24,7 +25,6 @@ from foon_asp.results.table import Block, Table
 from foon_asp.results.values import Node, Unit, Value, step_lines
 from foon_asp.results.values_of import node_as, node_of, nodes_of, unit_of
 from foon_asp.text.data_folder import Data
-from foon_asp.text.json_text import schema_name
 
 # Heading, row name, and the figure of one level.
 _ROWS: tuple[tuple[str, str, Callable[[Statistics], object]], ...] = (

@@ -11,6 +11,7 @@ from msgspec import field
 
 from foon_asp.asp import Settings
 from foon_asp.errors import UserError
+from foon_asp.json_layout import schema_name
 from foon_asp.network import FunctionalUnit, ObjectNode
 from foon_asp.problem import Problem
 from foon_asp.proof.replay import Replay, replay_for, replayable_problem
@@ -26,7 +27,6 @@ from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.table import Block
 from foon_asp.results.values import Copies, Copy, Unit, Value, changed_motions
 from foon_asp.results.values_of import copies_of, copy_of, lack_of, question_fields
-from foon_asp.text.json_text import schema_name
 from foon_asp.text.writer import write_counted_node, write_node
 from foon_asp.whole_file import utf_8, write_whole
 

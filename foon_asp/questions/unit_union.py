@@ -6,6 +6,7 @@ from fractions import Fraction
 from typing import Unpack
 
 from foon_asp.asp.tree_union import tree_union
+from foon_asp.json_layout import schema_name
 from foon_asp.network import counted
 from foon_asp.problem import Problem
 from foon_asp.questions.answer import Answer, WithAnswer
@@ -22,7 +23,6 @@ from foon_asp.questions.result import Ending
 from foon_asp.results.table import Block
 from foon_asp.results.values import Mention
 from foon_asp.results.values_of import mention_of, question_fields
-from foon_asp.text.json_text import schema_name
 
 
 class Membership(StrEnum):

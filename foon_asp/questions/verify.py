@@ -13,11 +13,12 @@ from foon_asp.deadline import Deadline, LimitError
 from foon_asp.errors import UserError
 from foon_asp.escapes import escaped
 from foon_asp.foon import Foon
+from foon_asp.json_layout import schema_name
 from foon_asp.network import Network, StandInTable, counted
 from foon_asp.problem import DEFAULT_RULE, ContainerRule, Problem, kitchen_needed, parse_objectives
 from foon_asp.proof import proved_checker, refusal
-from foon_asp.proof.certificate_file import load_certificate, read_certificate
 from foon_asp.proof.certificate_header import seal
+from foon_asp.proof.certificate_json import load_certificate, read_certificate
 from foon_asp.proof.certificate_rules import trusted_claims
 from foon_asp.proof.certificate_subject import Subject
 from foon_asp.proof.refusal import RefusedError
@@ -33,7 +34,6 @@ from foon_asp.results.document import AboutGoals
 from foon_asp.results.table import Block
 from foon_asp.results.values import Measures
 from foon_asp.results.values_of import goals_of, nodes_of
-from foon_asp.text.json_text import schema_name
 from foon_asp.text.plain_file import read_beginning
 
 if TYPE_CHECKING:  # takes the solver and linear programs along, which `verify` must not load

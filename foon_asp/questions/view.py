@@ -16,6 +16,7 @@ from foon_asp.dataset.nearby import without_reading_more
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
 from foon_asp.foon import Foon
+from foon_asp.json_layout import Json
 from foon_asp.network import FunctionalUnit, TaskTree, counted, unit_at_level
 from foon_asp.pictures.dot import dot_text
 from foon_asp.pictures.drawing import Drawing
@@ -50,7 +51,6 @@ from foon_asp.questions.shopping_list import Shopping, shopping_list
 from foon_asp.questions.tree import as_tree, read_listed_units
 from foon_asp.questions.why_not import Explanation, why_not
 from foon_asp.results.proof_cases import ProofCases
-from foon_asp.text.json_text import Json
 from foon_asp.whole_file import utf_8, write_whole
 
 _MERMAID_PAGE = ".md"

@@ -7,6 +7,7 @@ from typing import Any, Unpack
 
 from foon_asp.asp import Settings, Status
 from foon_asp.dataset.paths import as_path
+from foon_asp.json_layout import schema_name
 from foon_asp.network import ObjectNode, counted
 from foon_asp.problem import Problem
 from foon_asp.problem.relevance import reach, relevant_units
@@ -20,7 +21,6 @@ from foon_asp.questions.shopping_list import shopping_list
 from foon_asp.results.table import Block
 from foon_asp.results.values import Node, Unit
 from foon_asp.results.values_of import node_of, nodes_of, question_fields, unit_as
-from foon_asp.text.json_text import schema_name
 from foon_asp.text.line_parser import parse_node
 
 

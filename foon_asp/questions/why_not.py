@@ -9,6 +9,7 @@ from msgspec.structs import replace
 
 from foon_asp.dataset import Dataset
 from foon_asp.dataset.paths import File
+from foon_asp.json_layout import schema_name
 from foon_asp.network import STAND_IN, NodePattern, ObjectNode, StandInTable, counted, pattern_at_level
 from foon_asp.network.slip import nearest_nodes, slip_between
 from foon_asp.problem import Objective, Problem
@@ -25,7 +26,6 @@ from foon_asp.results.table import Block
 from foon_asp.results.values import Mention, Node, Unit, Value
 from foon_asp.results.values_of import mention_of, node_as, node_of, nodes_of, question_fields, unit_as
 from foon_asp.standins import with_stand_ins
-from foon_asp.text.json_text import schema_name
 
 if TYPE_CHECKING:  # takes clingo along, which only rules need
     from foon_asp.asp import Settings

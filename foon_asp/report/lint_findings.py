@@ -6,12 +6,12 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from foon_asp.escapes import UNSAFE, escaped
+from foon_asp.json_layout import Json
 from foon_asp.linting.catalog import CATALOG
 from foon_asp.linting.finding import Finding
 from foon_asp.network import counted
 from foon_asp.results.table import Block, Table
 from foon_asp.text.diagnostics import Severity
-from foon_asp.text.json_text import Json
 
 _COMMANDS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.NOTE: "notice"}
 _SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"

@@ -5,13 +5,13 @@ from typing import Any, ClassVar, Generic, Literal, Self, TypeVar
 
 from msgspec import UNSET, Struct
 
+from foon_asp.json_layout import Json, json_text, read_json
 from foon_asp.network import counted
 from foon_asp.problem import ContainerRule, Objective, conditions
 from foon_asp.results.plain_values import plain
 from foon_asp.results.table import Block, blocks_text
 from foon_asp.results.table_columns import csv_text, data_frame, flat_row, markdown_text
 from foon_asp.results.values import Node
-from foon_asp.text.json_text import Json, json_text, read_json
 
 T = TypeVar("T")
 

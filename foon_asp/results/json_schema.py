@@ -10,9 +10,9 @@ from typing import Any
 import msgspec
 from msgspec import Struct, structs
 
+from foon_asp.json_layout import Json, json_line, schema_name
 from foon_asp.problem import Costs, Objective
 from foon_asp.results.values import Figure
-from foon_asp.text.json_text import Json, json_line, schema_name
 
 _DRAFT = "https://json-schema.org/draft/2020-12/schema"
 _ATTRIBUTE = re.compile(r"^    (\w+): (.*(?:\n        .*)*)", re.MULTILINE)

@@ -8,8 +8,8 @@ from typing import Any, TypeVar
 
 import msgspec
 
+from foon_asp.json_layout import Json
 from foon_asp.problem import Costs, Objective, OptionalData
-from foon_asp.text.json_text import Json
 
 T = TypeVar("T")
 

@@ -7,10 +7,10 @@ from typing import Any, Self
 
 from msgspec import UNSET, UnsetType
 
+from foon_asp.json_layout import Json
 from foon_asp.problem import Objective, Problem, multiplies
 from foon_asp.results.values import Mention, Node, Value
 from foon_asp.results.values_of import mention_of, nodes_of
-from foon_asp.text.json_text import Json
 
 
 class Choice(Value, frozen=True):

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from foon_asp.text.json_text import Json, read_json
+from foon_asp.json_layout import Json, read_json
 
 SCHEMAS = Path(__file__).resolve().parent / "schemas"
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from foon_asp.errors import UserError
 from foon_asp.escapes import escaped
-from foon_asp.text.json_text import Json
+from foon_asp.json_layout import Json
 
 _EXACT = "_exact"
 _WRITTEN_NUMBER = re.compile(r"[+-]?[0-9]+(?:[./][0-9]+)?(?:e[+-]?[0-9]+)?", re.ASCII)

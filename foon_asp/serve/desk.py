@@ -11,6 +11,7 @@ from foon_asp.asp import Reporter, Settings, Status
 from foon_asp.deadline import Cancel, Deadline, StoppedError, stoppable
 from foon_asp.errors import UserError
 from foon_asp.foon import Foon
+from foon_asp.json_layout import Json
 from foon_asp.problem import Costs, Objective, Problem, UsedUp
 from foon_asp.questions.caller import Caller, asked_by
 from foon_asp.questions.python_arguments import chosen_objectives
@@ -20,7 +21,6 @@ from foon_asp.results.figure_text import bound_text, costs_text
 from foon_asp.rules.passed_constraint import Constraint, RuleText, find_constraint
 from foon_asp.serve.form import Form, RegretForm
 from foon_asp.text.diagnostics import InputError
-from foon_asp.text.json_text import Json
 from foon_asp.text.node_lookup import entry_names, nodes_beginning
 
 SendEvent = Callable[[Json], object]

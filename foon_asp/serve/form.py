@@ -5,9 +5,9 @@ from typing import Any, TypeVar
 import msgspec
 
 from foon_asp.errors import UserError
+from foon_asp.json_layout import read_json
 from foon_asp.problem import DEFAULT_RULE, ContainerRule
 from foon_asp.questions.view import PagePart
-from foon_asp.text.json_text import read_json
 
 Names = tuple[str, ...]
 Question = TypeVar("Question", bound=msgspec.Struct)

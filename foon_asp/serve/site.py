@@ -21,10 +21,10 @@ from starlette.routing import Route
 from foon_asp.daemon_thread import DaemonThread
 from foon_asp.deadline import Cancel
 from foon_asp.errors import UserError
+from foon_asp.json_layout import Json, json_line
 from foon_asp.pictures.page import digest, script_json, web_text
 from foon_asp.serve.desk import Desk, SendEvent
 from foon_asp.serve.form import Form, RegretForm, read_question
-from foon_asp.text.json_text import Json, json_line
 
 Asgi = Callable[[Any, Any, Any], Any]
 

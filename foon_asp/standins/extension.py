@@ -10,7 +10,7 @@ from typing import NamedTuple
 from foon_asp.errors import UserError
 from foon_asp.network import STAND_IN, Network, Source, StandInTable, UnitPrices
 from foon_asp.problem import Problem, StandIns, reach
-from foon_asp.standins.node_prices import NodePrices
+from foon_asp.standins.pair_prices import NodePrices
 
 _SOURCE = Source("stand-ins", 1)
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from foon_asp.network import STAND_IN
 from foon_asp.problem import Problem
-from foon_asp.standins.node_prices import NodePrices
+from foon_asp.standins.pair_prices import NodePrices
 
 
 class UsedStandIn(NamedTuple):

@@ -8,9 +8,9 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from foon_asp.errors import UserError
+from foon_asp.json_layout import Json, read_json, schema_name
 from foon_asp.network import Amounts, FunctionalUnit, Network, ObjectNode, Source
 from foon_asp.text.json_node import read_node_json
-from foon_asp.text.json_text import Json, read_json, schema_name
 from foon_asp.text.plain_file import read_plain_text
 from foon_asp.text.reader import FoonReader
 

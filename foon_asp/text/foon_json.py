@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from foon_asp.network import FunctionalUnit, NodePattern
 from foon_asp.text.diagnostics import InputError
 from foon_asp.text.exact_number import read_price
-from foon_asp.text.foon_json_layout import check_json, lay_out
+from foon_asp.text.foon_json_indent import check_json, lay_out
 from foon_asp.text.format import Dialect, Format, Writer
 from foon_asp.text.json_list import JsonList, begins_json
 from foon_asp.text.json_names import json_mentions, rename_in_json

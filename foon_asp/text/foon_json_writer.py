@@ -6,14 +6,14 @@ The texts are laid out like the published files, and read by :mod:`foon_asp.text
 import re
 from collections.abc import Sequence
 
+from foon_asp.json_layout import json_line
 from foon_asp.network import Contents, NodePattern, Relation
 from foon_asp.text.conversion_loss import CannotHoldError, lost_in_line, lost_in_states
 from foon_asp.text.diagnostics import Severity
-from foon_asp.text.foon_json_layout import STEP, lay_out
+from foon_asp.text.foon_json_indent import STEP, lay_out
 from foon_asp.text.format import Dialect, WrittenPart
 from foon_asp.text.json_list import JsonNumber
 from foon_asp.text.json_object import read_json_objects
-from foon_asp.text.json_text import json_line
 from foon_asp.text.json_units import read_json_units
 from foon_asp.text.line import MotionLine, ObjectLine, StateLine
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
 from foon_asp.errors import UserError
-from foon_asp.text.foon_json_layout import TOKEN
+from foon_asp.json_layout import json_line
+from foon_asp.text.foon_json_indent import TOKEN
 from foon_asp.text.json_object import LISTED_UNDER, is_none
-from foon_asp.text.json_text import json_line
 from foon_asp.text.line import LineError, Mention, NameKind, line_names
 from foon_asp.text.line_parser import read_line
 

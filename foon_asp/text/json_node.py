@@ -1,7 +1,7 @@
 """Reading object nodes from the JSON that foon-asp writes."""
 
+from foon_asp.json_layout import Json
 from foon_asp.network import ObjectNode
-from foon_asp.text.json_text import Json
 
 
 def read_node_json(value: Json) -> ObjectNode:

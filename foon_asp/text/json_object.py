@@ -6,12 +6,12 @@ from decimal import Decimal
 from pathlib import Path
 from typing import NamedTuple
 
+from foon_asp.json_layout import json_line
 from foon_asp.network import Contents, NodePattern, ObjectNode, Relation, Source
 from foon_asp.text.amount_mark import EXPECTED_AMOUNT, parse_amount
 from foon_asp.text.exact_number import MAX_LETTERS, read_price
 from foon_asp.text.json_list import JsonList, JsonNumber
 from foon_asp.text.json_node import read_node_json
-from foon_asp.text.json_text import json_line
 from foon_asp.text.line import MOTION_FLAGS, LineError, ObjectLine, StateLine, is_number
 from foon_asp.text.line_parser import parse_node, read_state
 from foon_asp.text.listed_unit import ObjectBlock

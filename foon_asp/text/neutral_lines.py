@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from foon_asp.network import FunctionalUnit, ObjectNode, Source, UnitAmounts
 from foon_asp.text.exact_number import read_price
 from foon_asp.text.foon_json import FoonJson
-from foon_asp.text.foon_json_layout import on_one_line
+from foon_asp.text.foon_json_indent import on_one_line
 from foon_asp.text.format import Dialect, Writer
 from foon_asp.text.json_list import DECODER, JsonFaultError, JsonNumber, json_fault
 from foon_asp.text.json_names import json_mentions

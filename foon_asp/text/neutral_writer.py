@@ -4,11 +4,11 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from decimal import Decimal
 
+from foon_asp.json_layout import json_line
 from foon_asp.network import ObjectNode
 from foon_asp.text.conversion_loss import CannotHoldError, Loss, lost_in_line
 from foon_asp.text.foon_json_writer import list_text
 from foon_asp.text.format import WrittenPart
-from foon_asp.text.json_text import json_line
 from foon_asp.text.line import MotionLine, ObjectLine
 from foon_asp.text.listed_unit import ObjectBlock
 from foon_asp.text.text_writer import with_container_word

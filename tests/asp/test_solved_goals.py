@@ -10,7 +10,7 @@ from foon_asp.certificate.certificate import subject_of
 from foon_asp.deadline import Deadline
 from foon_asp.hypergraph import SolvedGoals, tuning
 from foon_asp.problem import Objective, Problem, Restriction
-from foon_asp.proof.certificate_file import read_certificate
+from foon_asp.proof.certificate_json import read_certificate
 from foon_asp.proof.verifier import verify
 from tests.support.gap_problem import gap_problem
 from tests.support.hard_problem import hard_problem

@@ -20,7 +20,7 @@ from foon_asp.certificate import (
 )
 from foon_asp.network import TaskTree
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
-from foon_asp.proof.certificate_file import read_certificate
+from foon_asp.proof.certificate_json import read_certificate
 from foon_asp.proof.simulation import simulate_for
 from foon_asp.proof.verified_claim import Verified
 from foon_asp.resources import bundled_kitchen

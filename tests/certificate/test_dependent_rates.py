@@ -10,7 +10,7 @@ import pytest
 
 from foon_asp.certificate import NotBestError, certify
 from foon_asp.problem import Objective, Problem
-from foon_asp.proof.certificate_file import read_certificate
+from foon_asp.proof.certificate_json import read_certificate
 from tests.conftest import Cli
 from tests.proof.by_hand import recipe
 from tests.support.handmade_certificate import check

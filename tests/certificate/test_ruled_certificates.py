@@ -12,7 +12,7 @@ from foon_asp.certificate import Certificate, certify_outcome, coverage
 from foon_asp.certificate.certificate import subject_of
 from foon_asp.network import UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem
-from foon_asp.proof.certificate_file import read_certificate
+from foon_asp.proof.certificate_json import read_certificate
 from foon_asp.proof.rule_meaning import LIBRARY
 from foon_asp.proof.verifier import verify
 from tests.oracle import task_trees

@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 from foon_asp.batch.question_file import read_questions
 from foon_asp.cli.main import main
 from foon_asp.errors import UserError
-from foon_asp.proof.certificate_file import read_certificate
+from foon_asp.proof.certificate_json import read_certificate
 from foon_asp.proof.refusal import RefusedError
 from foon_asp.text.answer_file import read_listed_tree
 from foon_asp.text.diagnostics import InputError

@@ -25,6 +25,7 @@ FLOORS = (
         "resources",
         "deadline",
         "garbage_collection",
+        "json_layout",
         "file_permissions",
         "argument_checks",
         "warning",
@@ -216,7 +217,7 @@ VERIFIER = {
     for name in (
         "canonical_json",
         "certificate_fields",
-        "certificate_file",
+        "certificate_json",
         "certificate_header",
         "certificate_items",
         "certificate_limits",
@@ -241,6 +242,6 @@ VERIFIER = {
 def test_the_verifier_imports_the_standard_library_and_the_plain_network() -> None:
     names = {name for module in VERIFIER for _, name in imports(module.replace(".", "/") + ".py")}
     ours = {name for name in names if name.startswith("foon_asp")}
-    not_imported = {"foon_asp.proof.certificate_file", "foon_asp.proof.verify_plan"}
+    not_imported = {"foon_asp.proof.certificate_json", "foon_asp.proof.verify_plan"}
     assert ours == {"foon_asp.network"} | VERIFIER - not_imported
     assert {name.split(".")[0] for name in names - ours} <= sys.stdlib_module_names

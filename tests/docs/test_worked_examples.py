@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from foon_asp.json_layout import json_text, read_json
 from foon_asp.planning import translator
-from foon_asp.text.json_text import json_text, read_json
 from tests.conftest import ROOT, Cli
 
 needs_or_tools = pytest.mark.skipif(

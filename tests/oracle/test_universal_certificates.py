@@ -11,7 +11,7 @@ from foon_asp.certificate.certificate import subject_of
 from foon_asp.comparison.many import makeable
 from foon_asp.engines import ClaimedAnswer, cross_check
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
-from foon_asp.proof.certificate_file import read_certificate
+from foon_asp.proof.certificate_json import read_certificate
 from foon_asp.proof.verifier import verify
 from foon_asp.text.data_folder import Data, find_data, read_data
 from foon_asp.text.node_lookup import find_goal

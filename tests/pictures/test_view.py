@@ -13,13 +13,13 @@ import pytest
 
 import foon_asp
 from foon_asp import UserError
+from foon_asp.json_layout import json_text
 from foon_asp.network import ObjectNode
 from foon_asp.pictures.page import WEB
 from foon_asp.problem import reach
 from foon_asp.results.plain_values import plain
 from foon_asp.results.proof_cases import ProofCases
 from foon_asp.searches import find_searches
-from foon_asp.text.json_text import json_text
 from tests.conftest import Cli, valid
 from tests.questions.recipes import posed
 

@@ -17,8 +17,8 @@ from foon_asp.network import StandInTable, UnitPrices
 from foon_asp.problem import Problem, StandIns
 from foon_asp.proof import (
     certificate_fields,
-    certificate_file,
     certificate_header,
+    certificate_json,
     certificate_rules,
     compiled_rules,
     exact_amounts,
@@ -62,7 +62,7 @@ from tests.support.handmade_certificate import Content, forbid, handmade
 
 # Each module imports only those before it.
 VERIFIER = (
-    *(rule_meaning, compiled_rules, refusal, certificate_file),
+    *(rule_meaning, compiled_rules, refusal, certificate_json),
     *(certificate_fields, certificate_rules, certificate_header),
     *(step_budget, exact_amounts, unit_costs, verifier),
 )

@@ -15,8 +15,8 @@ from foon_asp.network import FunctionalUnit, UnitPrices, network_at_level
 from foon_asp.problem import ContainerRule, Problem
 from foon_asp.proof import verifier
 from foon_asp.proof.canonical_json import canonical_json
-from foon_asp.proof.certificate_file import load_certificate, read_certificate
 from foon_asp.proof.certificate_header import seal
+from foon_asp.proof.certificate_json import load_certificate, read_certificate
 from foon_asp.proof.certificate_limits import ALLOWED
 from foon_asp.proof.certificate_rules import trusted_claims
 from foon_asp.proof.certificate_subject import Subject

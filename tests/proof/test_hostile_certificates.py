@@ -12,8 +12,8 @@ import pytest
 import foon_asp
 from foon_asp.certificate import certify
 from foon_asp.problem import Objective, levels
-from foon_asp.proof.certificate_file import read_certificate
 from foon_asp.proof.certificate_header import seal
+from foon_asp.proof.certificate_json import read_certificate
 from foon_asp.proof.refusal import RefusedError
 from foon_asp.questions.verify import VerifiedCertificate
 from tests.conftest import Cli

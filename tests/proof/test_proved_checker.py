@@ -21,8 +21,8 @@ from foon_asp.certificate.certificate import subject_of
 from foon_asp.network import UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.proof import proved_checker
-from foon_asp.proof.certificate_file import read_certificate
 from foon_asp.proof.certificate_header import seal
+from foon_asp.proof.certificate_json import read_certificate
 from foon_asp.proof.certificate_rules import read_rules
 from foon_asp.proof.certificate_subject import Subject
 from foon_asp.proof.refusal import RefusedError

@@ -10,11 +10,11 @@ import pytest
 
 import foon_asp
 from foon_asp.errors import UserError
+from foon_asp.json_layout import read_json
 from foon_asp.network import FunctionalUnit
 from foon_asp.problem import ContainerRule, Problem, UsedUp
 from foon_asp.proof.replay import replay_for
 from foon_asp.proof.used_up_run import used_up_run
-from foon_asp.text.json_text import read_json
 from tests.conftest import Cli
 from tests.oracle import used_up
 from tests.proof.by_hand import recipe

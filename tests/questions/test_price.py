@@ -19,8 +19,8 @@ from foon_asp.hypergraph import ALL, NONE, Reduction
 from foon_asp.network import FunctionalUnit, Network, UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.proof import verifier
-from foon_asp.proof.certificate_file import read_certificate
 from foon_asp.proof.certificate_header import seal
+from foon_asp.proof.certificate_json import read_certificate
 from foon_asp.proof.refusal import RefusedError
 from foon_asp.questions.pareto import pareto
 from tests.oracle import task_trees

@@ -16,13 +16,13 @@ from hypothesis import strategies as st
 
 import foon_asp
 from foon_asp.cli.verbs import VERBS, verb_command
+from foon_asp.json_layout import json_text, read_json, schema_name
 from foon_asp.network import NetworkBuilder, ObjectNode
 from foon_asp.planning import translator
 from foon_asp.results.plain_values import plain
 from foon_asp.results.schema_file import schema, schema_kinds
 from foon_asp.results.values_of import named_node
 from foon_asp.text.json_node import read_node_json
-from foon_asp.text.json_text import json_text, read_json, schema_name
 from tests.conftest import Cli, valid
 
 FORBID = ("--constraint", "forbid_motion", "-c", 'forbidden_motion="crush"')

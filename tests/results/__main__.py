@@ -10,11 +10,11 @@ import msgspec
 import foon_asp
 from foon_asp.batch.answer_row import AnswerRow
 from foon_asp.comparison.comparison import Comparison
+from foon_asp.json_layout import Json, json_text
 from foon_asp.results.document import Document
 from foon_asp.results.json_schema import schema_of, schema_of_rows
 from foon_asp.results.schema_file import SCHEMAS
 from foon_asp.results.values import Value
-from foon_asp.text.json_text import Json, json_text
 from tests.results.json_page import PAGE, page
 
 ROWS: dict[str, type[msgspec.Struct]] = {"batch-row": AnswerRow, "compare-row": Comparison}

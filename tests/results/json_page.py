@@ -12,8 +12,8 @@ from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
+from foon_asp.json_layout import Json, json_line, read_json
 from foon_asp.results.schema_file import schema, schema_kinds
-from foon_asp.text.json_text import Json, json_line, read_json
 from tests.conftest import ROOT
 from tests.golden.transcript import run_here
 

@@ -2,9 +2,9 @@
 
 import pytest
 
+from foon_asp.json_layout import json_text
 from foon_asp.planning import translator
 from foon_asp.results.schema_file import SCHEMAS
-from foon_asp.text.json_text import json_text
 from tests.results.__main__ import schemas
 from tests.results.json_page import PAGE, page
 

@@ -16,7 +16,7 @@ from foon_asp.certificate.own_rules import check_with_clingo
 from foon_asp.deadline import Deadline
 from foon_asp.network import NetworkBuilder, ObjectNode, Source, UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem
-from foon_asp.proof.certificate_file import read_certificate
+from foon_asp.proof.certificate_json import read_certificate
 from foon_asp.proof.compiled_rules import CompiledRules
 from foon_asp.proof.refusal import LimitError, RefusedError
 from foon_asp.proof.rule_meaning import LIBRARY, OWN, Meaning, sources_read

@@ -15,8 +15,8 @@ from foon_asp.errors import BugError
 from foon_asp.network import STAND_IN
 from foon_asp.problem import Objective
 from foon_asp.proof import verifier
-from foon_asp.proof.certificate_file import load_certificate
 from foon_asp.proof.certificate_header import seal
+from foon_asp.proof.certificate_json import load_certificate
 from foon_asp.proof.refusal import RefusedError
 from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.standins import with_stand_ins

@@ -9,7 +9,7 @@ import pytest
 import foon_asp
 from foon_asp.network import NetworkBuilder, ObjectNode, Source, StandInTable
 from foon_asp.proof.stand_ins import price_of
-from foon_asp.standins.node_prices import NodePrices
+from foon_asp.standins.pair_prices import NodePrices
 from foon_asp.standins.table_file import read_stand_ins
 from foon_asp.text.diagnostics import InputError
 from tests.standins.test_best_stand_ins import PRICES

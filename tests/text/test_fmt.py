@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from foon_asp.text.diagnostics import InputError
-from foon_asp.text.foon_json_layout import lay_out
+from foon_asp.text.foon_json_indent import lay_out
 from foon_asp.text.formats import format_of
 from foon_asp.text.listed_unit import ReadUnit
 from foon_asp.text.plain_file import read_plain_text

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from foon_asp.json_layout import Json
 from foon_asp.network import FunctionalUnit, counted
 from foon_asp.network.near_units import nearest_units
 from foon_asp.pictures.two_columns import PairSection, two_column_page
@@ -11,7 +12,6 @@ from foon_asp.results.plain_values import plain
 from foon_asp.results.table_columns import flat_row
 from foon_asp.results.values import Unit, UnitDifference, Value
 from foon_asp.results.values_of import differences_of
-from foon_asp.text.json_text import Json
 
 
 class NearUnits(Value, frozen=True):

@@ -4,12 +4,12 @@ from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from typing import Final, Literal, Self
 
+from foon_asp.json_layout import schema_name
 from foon_asp.network import ALL_ONE, LEVELS, Amounts, Network, counted, network_at_level
 from foon_asp.questions.diff.difference import Difference, difference_fields
 from foon_asp.results.table import Block, Table
 from foon_asp.results.values import Node, Unit, Value
 from foon_asp.results.values_of import named_node, unit_of
-from foon_asp.text.json_text import schema_name
 
 Side = Literal["inputs", "outputs"]
 _SIDES: Final[tuple[Side, Side]] = ("inputs", "outputs")

@@ -6,6 +6,7 @@ from typing import Literal
 
 from msgspec import UNSET, UnsetType
 
+from foon_asp.json_layout import schema_name
 from foon_asp.network import FunctionalUnit, ObjectNode, counted
 from foon_asp.problem import ContainerRule, Costs, Objective, given_outputs, needed_inputs
 from foon_asp.questions.diff.difference import Difference, difference_fields
@@ -16,7 +17,6 @@ from foon_asp.results.figure_text import costs_text
 from foon_asp.results.table import Block
 from foon_asp.results.values import Node, Unit, UsedUpRun, Value
 from foon_asp.results.values_of import listed_unit, named_node, question_fields, used_up_of
-from foon_asp.text.json_text import schema_name
 
 
 class Side(Value, frozen=True, kw_only=True):
