@@ -732,9 +732,9 @@ class _Solver:
         return agree
 
     def _require_measures(self, agree: bool) -> None:
-        """Raise :class:`UserError` unless ``agree``: clingo's costs are the weights of a tree.
+        """Raise :class:`UserError` if ``agree`` is false: clingo's costs of a tree are not our weights of it.
 
-        This is for a tree after one whose costs agreed. Disagreement means that a replaced objectives.lp
+        Called for a tree after one whose costs agreed. Disagreement means that a replaced objectives.lp
         measures only some trees as usual, so that trees cannot be compared.
         """
         if not agree:

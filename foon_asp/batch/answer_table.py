@@ -29,8 +29,9 @@ _ARROW_TYPES: Final = {
 def answer_columns(objectives: Iterable[Objective]) -> Iterator[tuple[str, Any]]:
     """Yield the name and type of each column: the fields of a row, with costs and bounds by objective.
 
-    A column is named ``costs.units``. A number that may be a fraction is a decimal; another column ending in
-    ``_exact`` has the exact number as text. A column ``costs.ingredients`` follows the other costs.
+    The costs by ``units`` are in the column ``costs.units``, for example. A number that may be a fraction is
+    rounded to a decimal; another column ending in ``_exact`` has the exact number as text. A column
+    ``costs.ingredients`` follows the other costs.
     """
     objectives = tuple(objectives)
     for field in msgspec.structs.fields(AnswerRow):

@@ -17,7 +17,7 @@ def end_at_ctrl_c() -> None:
 
 
 def raise_at_ctrl_c() -> None:
-    """Make ctrl-C raise ``KeyboardInterrupt`` again, after :func:`end_at_ctrl_c`."""
+    """Undo :func:`end_at_ctrl_c`: ctrl-C raises ``KeyboardInterrupt`` again; any other handler stays."""
     if signal.getsignal(signal.SIGINT) is _exit_at_once:
         signal.signal(signal.SIGINT, signal.default_int_handler)
 

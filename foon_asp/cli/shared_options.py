@@ -172,7 +172,10 @@ def limit_options(command: Callable[..., ExitCode]) -> Callable[..., ExitCode]:
 
     @functools.wraps(command)
     def limited(time_limit: float | None, memory_limit: int | None, **values: object) -> ExitCode:
-        """Call the command with its deadline; print advice, or raise it, if a limit stopped the command."""
+        """Call the command with its deadline; if a limit stopped it, print advice.
+
+        If the limit interrupted the command itself, :class:`LimitError` is raised instead.
+        """
         deadline = start_deadline(time_limit, memory_limit)
         try:
             code = command(deadline=deadline, **values)

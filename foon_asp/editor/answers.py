@@ -243,7 +243,7 @@ def _escape_markdown(text: str) -> str:
 
 
 def _definitions(checked: CheckedText, parameters: object) -> list[Json]:
-    """Return the locations where the achievers of the node of a line list it as an output.
+    """Return where the achievers of an object node list it as an output; the node is that of a line.
 
     If a unit is not found to list the node, its location is its first line. Return no locations if the line
     belongs to no node.

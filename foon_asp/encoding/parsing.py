@@ -34,7 +34,10 @@ def parse(rules: Loaded, add: Callable[[AST], None], logger: Callable[[MessageCo
 
 
 def load(control: Control, rules: Stated, logger: Callable[[MessageCode, str], None]) -> None:
-    """Add rules without a file to a program, under their name in messages."""
+    """Add rules that are in no file to a program.
+
+    In clingo's messages about them, the file is called by their name.
+    """
     with ProgramBuilder(control) as builder:
         parse(rules, builder.add, logger)
 

@@ -202,9 +202,10 @@ class _Growth:
         self._targets = len(cutter.targets)
 
     def reaches_targets_with(self, actions: Iterable[int]) -> bool:
-        """Admit actions until one is refused; return whether one was, since it would reach all targets.
+        """Admit actions up to the first with which all targets would be reached; that one is refused.
 
-        Also return ``True`` if there are no targets. After ``True``, this object must not be used any more.
+        Return whether there was one. Also return ``True`` if there are no targets. After ``True``, this
+        object must not be used any more.
         """
         return not self._unreached or bool(self.admit(actions, max_refused=1))
 

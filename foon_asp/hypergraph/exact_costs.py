@@ -211,7 +211,8 @@ class ExactCosts:
     def _scaled_cost(self, objective: Objective, action: int) -> int:
         """Return the scaled cost of an action by one objective.
 
-        If the action takes a kitchen item, it is 1 for an objective that counts items, and 0 for any other.
+        Actions numbered after the units take one kitchen item each. They cost 1 by an objective that counts
+        items, and 0 by any other.
         """
         if action >= self._units:
             return objective.row.item

@@ -588,7 +588,10 @@ class _NodeRelaxation:
             self.lp_values[column] = 1.0
 
     def packing(self, exact: ExactOptimum) -> Packing:
-        """Return the cost partition of an exact optimum: its duals as weights of cuts and limits."""
+        """Return the cost partition of an exact optimum: its duals are the weights of cuts and of limits.
+
+        A limit is a row of the LP with an upper bound on a sum over actions.
+        """
         weights = sorted(exact.duals.items())
         first = len(self._limits)
         return Packing(

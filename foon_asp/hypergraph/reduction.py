@@ -472,7 +472,10 @@ class _Presolve:
             self.run_stages(stages, h_values)
 
     def run_with_solved_goals(self, solved: SolvedGoals) -> None:
-        """Run all rounds under the guard, from a gap of ``solved`` if it has one; record the answer in it."""
+        """Run all rounds, interrupted when time is up, and record the resulting gap in ``solved``.
+
+        The rounds begin with the gap that ``solved`` has for these goals, if it has one.
+        """
 
         def run_from_shared_gap() -> None:
             """Run the rounds from the gap of ``solved``, or from a first tree if there is no such gap.

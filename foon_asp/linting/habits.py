@@ -60,7 +60,7 @@ class Habit(NamedTuple):
 
 
 class Habits:
-    """The changes of the units of a network, and which names are ingredients.
+    """What the units of a network change in their objects, and which names are ingredients.
 
     ``ingredients``: all names that stand among contents.
     ``foods``: the ingredients that never have contents and to which no object has a relation.

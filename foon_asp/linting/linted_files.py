@@ -117,8 +117,8 @@ class LintedFiles:
     def _read_json(self, text: str, file: Path, format_: Format, source_lines: list[str]) -> None:
         """Read a JSON file as a sheet of equivalent lines of FOON text, and add its units to the network.
 
-        ``source_lines`` are the lines of the file itself. Errors in a kitchen or list of goals and values
-        that have no meaning there become remarks.
+        ``source_lines`` are the lines of the file itself. A list of objects, such as a kitchen or goals, has
+        entries instead of units; there, errors become remarks, and so do values without a meaning.
         """
         lines: list[str] = []
         sources: list[Source] = []

@@ -34,7 +34,7 @@ class Vocabulary:
     """
 
     def __init__(self, rows: Iterable[_Row] = ()) -> None:
-        """Collect rows of a kind, a name of this kind, and its numbers."""
+        """Collect rows; each has a kind, a name of this kind, and the numbers of the name."""
         self.numbers: dict[str, dict[str, Sequence[int]]] = {kind: {} for kind in _NUMBERS}
         for kind, name, numbers in rows:
             by_name = self.numbers[kind]

@@ -32,7 +32,7 @@ def write_gantt(gantt: Gantt, file: Path) -> None:
 
 
 def _draw_bars(gantt: Gantt, figure: "Figure", axes: "Axes") -> None:
-    """Draw a bar for each step, the first step on top.
+    """Draw the chart: a bar for each step, the first step on top, with names, times and a legend of agents.
 
     Each agent has a color; steps without an agent are hatched.
     """

@@ -70,9 +70,11 @@ class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ch
     def of(cls, tree: Tree, objectives: Iterable[Objective] = (), **fields: Any) -> Self:
         """Simulate a tree, or replay a plan, and return what was found.
 
+        Costs are ``None`` if the network lacks one of its units.
+
         Parameters:
             tree: The tree or plan.
-            objectives: The objectives by which a certificate is to prove it the best.
+            objectives: The objectives of the question, listed in the result; nothing is proved here.
             fields: Further fields of a subclass.
         """
         problem, simulation = tree.problem, _simulate(tree)
@@ -151,7 +153,7 @@ class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ch
         return str(self.in_order or self.tree)
 
     def remark(self, format_: str) -> str:
-        """Return the notes on the certificate, the same for each format: only text has them."""
+        """Return the notes on the certificate; only results as text have them, so ``format_`` is not read."""
         return "\n".join(self.notes)
 
     def drawing(self) -> Drawing | None:

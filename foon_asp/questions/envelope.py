@@ -134,9 +134,9 @@ class Envelope:
     def _motions_free_to_rise(self) -> set[str]:
         """Return motions whose rates may rise to 1 while the tree stays optimal; many are tested at once.
 
-        A test sets the rates of all units outside the tree that have one of the motions to 1. If the tree
-        stays optimal, it also does when the rate of one motion alone rises, since no other tree gains more by
-        that. Otherwise the motions by which the better tree gains are removed, and the test is repeated. If a
+        A test sets to 1 the rates of all units of these motions outside the tree. If the tree stays optimal,
+        it also stays so if only one of the motions rises: no other tree gains more from one motion than from
+        all. Otherwise the motions by which the better tree gains are removed, and the test is repeated. If a
         limit comes first, the set is empty.
         """
         network, own_rates = self._problem.network, self._problem.own_rates

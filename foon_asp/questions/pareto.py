@@ -371,10 +371,11 @@ def _best_plans(
 ) -> Iterator[Outcome]:
     """Yield outcomes with plans of the front: each is the best by ``order`` in the boxes that remain.
 
-    A box has an upper bound on the costs by each objective but the first. Together, the boxes contain all
-    costs that are less than those of every plan so far by such an objective. Each box is solved once, and the
-    best of the plans is yielded. The boxes that contain its costs are then divided. If no box has a plan,
-    nothing more is yielded. An outcome without a proof is yielded as well; the caller stops there.
+    A box has an upper bound on the costs by each objective but the first. A plan is in some box if, compared
+    with each plan so far, it costs less by at least one of these objectives, which may differ from plan to
+    plan. Each box is solved once, and the best of the plans is yielded. The boxes that contain its costs are
+    then divided. If no box has a plan, nothing more is yielded. An outcome without a proof is yielded as
+    well; the caller stops there.
     """
     reporter, other_objectives = caller().reporter, order[1:]
     boxes: list[Box] = [(None,) * len(other_objectives)]

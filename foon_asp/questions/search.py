@@ -126,7 +126,7 @@ class Retrieved(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("
         return Ending.DONE if self.executes else Ending.NEGATIVE
 
     def show(self) -> Iterator[Block]:
-        """Return the promise of the search, whether its tree executes, and the steps in the order listed.
+        """Yield what the search guarantees of its trees, whether this tree executes, and the steps as listed.
 
         Without a tree, a line says why no tree was found.
         """

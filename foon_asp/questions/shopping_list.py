@@ -169,7 +169,10 @@ class Shopping(WithAnswer, frozen=True, kw_only=True, tag=schema_name("shopping-
         return f"whatever is bought, the constraints leave no tree: proved ({self.conditions})"
 
     def _item_lines(self, item: Item) -> Iterator[str]:
-        """Yield an item with its price, and the steps of the tree that need it."""
+        """Yield an item, with its price if prices are known, and a line with the steps that need it.
+
+        The line is left out if no step needs the item.
+        """
         yield f"  {item}" + (f"    {_price_as_decimal(item.price)}" if self.offer is Offer.PRICED else "")
         steps = () if self.answer is None else self.answer.units or ()
         consumers = [step for step in steps if any(used.node == item.node for used in step.inputs)]
@@ -586,10 +589,10 @@ class _Shopper:
         return outcome.status in {Status.OPTIMAL, Status.INFEASIBLE}
 
     def _bought_list(self, outcome: Outcome, purchases: Purchases) -> _PricedList:
-        """Return the list that a tree or plan with purchases buys, and as its outcome the tree or plan.
+        """Split an outcome with purchases into the items bought and a tree or plan without purchases.
 
-        The outcome has no purchases among its units: the items are in the kitchen of its problem. Raises
-        :class:`BugError` if the tree or plan does not execute with them.
+        The problem of this tree or plan has the items in its kitchen. Raises :class:`BugError` if it does not
+        execute with them.
         """
         assert outcome.units is not None
         bought, units = purchases.split(outcome.units)
@@ -628,10 +631,10 @@ def _lists_under_rules(
     """Return the cheapest lists of ``sold`` wares under rules, by one run of clingo for each list.
 
     ``sold`` are prices by id of the node. Of equally cheap lists, clingo prefers those without
-    ``second_choices``, which are mixtures and nodes that units make. If trees are ``compared``, the caller
-    chooses among equally cheap lists by their trees: so up to 30 lists are found, as long as they cost as
-    much as list number ``max_lists``. Raises :class:`UserError` for prices beyond 32 bits. An empty list ends
-    the search, since nothing has to be bought.
+    ``second_choices``, which are mixtures and nodes that units make. With ``compared``, further lists that
+    cost as much as list number ``max_lists`` are returned, up to 30 in all: the caller chooses among them by
+    their trees. Raises :class:`UserError` for prices beyond 32 bits. An empty list ends the search, since
+    nothing has to be bought.
     """
     scale = math.lcm(*(price.denominator for price in sold.values()))
     if any(price * scale > INT32_MAX for price in sold.values()):

@@ -30,7 +30,7 @@ class NodeEdit(Value, frozen=True):
 
 
 class NextStandIn(Node, frozen=True, kw_only=True):
-    """The cheapest other node that could be used.
+    """The node that would be the cheapest stand-in if the one that is used were not there.
 
     Attributes:
         dissimilarity: What it costs by the table of stand-ins.
@@ -116,7 +116,7 @@ def _next_stand_in(network: Network, o: int, dissimilarity: Fraction) -> NextSta
 
 
 def _price_text(price: Fraction) -> str:
-    """Return a price of the table of stand-ins, a dissimilarity, as text."""
+    """Return a dissimilarity as text; the table of stand-ins calls it a price."""
     return figure_text(Objective.DISSIMILARITY, price)
 
 

@@ -281,8 +281,10 @@ class Dependence:
     def _of_guard(self, aggregate: Aggregate, guard: Guard, conditions: Monotonicity) -> Monotonicity:
         """Return the monotonicity that an aggregate would have with only the given guard.
 
-        It is ``BOTH`` for ``=`` and ``!=``, except for a count of 0, and for a sum whose weights may be
-        negative. ``conditions`` is the monotonicity of the conditions of the aggregate's elements.
+        ``conditions`` is the monotonicity of the conditions of the aggregate's elements. The result is
+        ``conditions`` or its negation, by the direction of the comparison; ``#min`` reverses it. It is
+        ``BOTH`` for ``!=``, for ``=``, and for a sum whose weights may be negative. A count that equals 0 is
+        an exception: it has the negation.
         """
         operator, function = guard.comparison, aggregate.function
         if operator in {ComparisonOperator.Equal, ComparisonOperator.NotEqual}:

@@ -281,10 +281,10 @@ class _Evaluation:
 def _nodes_key(
     network: Network, unit: int, object_lists: Sequence[Sequence[Sequence[int]]], kinds: Sequence[int]
 ) -> Hashable:
-    """Return a key for the object nodes of a unit that does not depend on their numbers.
+    """Return a key for the object nodes of a unit; units whose nodes differ only in their ids have one key.
 
-    The key has the kind of each node, and the positions of the nodes in each of ``object_lists``. ``kinds``
-    has the same number for nodes with the same facts.
+    It has the kind of each node, and the places of the nodes, among those of the unit, in each of
+    ``object_lists``. ``kinds`` has a number for each node, the same number for nodes with the same facts.
     """
     nodes = dict.fromkeys((*network.inputs[unit], *network.outputs[unit]))
     positions = {o: position for position, o in enumerate(nodes)}

@@ -397,7 +397,7 @@ class _Atoms(Transformer):
             self._visit_terms(symbol.arguments)
 
     def _visit_terms(self, terms: Iterable[AST]) -> None:
-        """Visit the terms that are not variables; as arguments, variables are only tested for equality."""
+        """Visit the arguments of an atom, except its variables: an atom compares these only for equality."""
         for term in terms:
             if term.ast_type is not ASTType.Variable:
                 self.visit(term)

@@ -82,7 +82,10 @@ class Rules:
         self.rules: tuple[Rule, ...] = self._analysis.rules
 
     def varying(self, varied: Collection[Signature]) -> "Rules":
-        """Return the same rules for a question in which some predicates of facts are derived or varied."""
+        """Return these rules as they are understood if the facts of some predicates may change.
+
+        Such facts are derived by other rules, or differ from question to question.
+        """
         return Rules(self._encodings, self._constants, varied, self._endless)
 
     @cached_property

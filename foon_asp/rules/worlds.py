@@ -24,9 +24,11 @@ class Worlds(Transformer):
         return atom.update(symbol=self._add_world(atom.symbol))
 
     def _add_world(self, symbol: AST) -> AST:
-        """Return the symbol of an atom, with a world if its predicate differs from world to world.
+        """Return the symbol of an atom; if its predicate differs between worlds, with a variable for the
+        world.
 
-        The world becomes the first argument, and the name gets the prefix. In a pool, each atom is changed.
+        The variable becomes the first argument, and the name gets the prefix. In a pool, each atom is
+        changed. Symbols of other predicates are returned unchanged.
         """
         if symbol.ast_type is ASTType.Pool:
             return symbol.update(arguments=[self._add_world(argument) for argument in symbol.arguments])

@@ -61,9 +61,9 @@ def lost_in_line(line: Line, converted: Line) -> list[Loss]:
 
 
 def lost_in_states(states: tuple[StateLine, ...], converted: tuple[StateLine, ...]) -> list[Loss]:
-    """Return a loss for each part of the state lines of an object that the ``converted`` lines have not.
+    """Return a loss for each part of the state lines of an object that the ``converted`` lines lack.
 
-    A relation without a word is a container: it stands for a relation by any word. Raises
+    A relation is not lost if the converted lines have it without its word, as a container. Raises
     :class:`CannotHoldError` if the object would be read back with other states, relations or ingredients.
     """
     ids = Counter(state.id for state in states if state.id) - Counter(state.id for state in converted)
