@@ -15,11 +15,11 @@ def _register_reader_rule(code: str, severity: Severity, meaning: str, explanati
     ``explanation`` is the text for users.
     """
 
-    def remarks_with_code(context: Context) -> list[Diagnostic]:
+    def remarks_of_this_code(context: Context) -> list[Diagnostic]:
         return context.remarks.get(code, [])
 
-    remarks_with_code.__doc__ = explanation
-    rule(code, severity, meaning)(remarks_with_code)
+    remarks_of_this_code.__doc__ = explanation
+    rule(code, severity, meaning)(remarks_of_this_code)
 
 
 _register_reader_rule(

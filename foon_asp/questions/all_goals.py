@@ -151,21 +151,27 @@ def solve_all_goals(
         [2, 3, 7, 7]
     """
     list_texts = [objectives] if isinstance(objectives, str) else objectives
-    lists = [chosen_objectives(problem, text) for text in list_texts]
+    objective_lists = [chosen_objectives(problem, text) for text in list_texts]
     # limits are for each answer, ctrl-C is for all of them
     settings, each_limits = settings_of(options), limits_of(options)
     outer = Deadline(within=caller().deadline)
-    solved_by_list = [SolvedGoals() for _ in lists]
+    solved_by_list = [SolvedGoals() for _ in objective_lists]
     outcomes_of: dict[int, list[Outcome]] = {}
-    for index, goal in _in_search_order(_problems_by_goal(problem, settings), solved_by_list[0]):
+    for index, goal_problem in _in_search_order(_problems_by_goal(problem, settings), solved_by_list[0]):
         outcomes_of[index] = []
-        for chosen, solved in zip(lists, solved_by_list, strict=True):
+        for objective_list, solved in zip(objective_lists, solved_by_list, strict=True):
             goal_settings = settings._replace(deadline=Deadline(*each_limits, within=outer))
-            nearby = near_goals(goal, chosen, goal_settings)
+            nearby = near_goals(goal_problem, objective_list, goal_settings)
             if nearby is None:
-                outcome = solve(read_deferred(goal), chosen, goal_settings, caller().reporter, solved=solved)
+                outcome = solve(
+                    read_deferred(goal_problem),
+                    objective_list,
+                    goal_settings,
+                    caller().reporter,
+                    solved=solved,
+                )
             else:
-                outcome = answer_from_store(nearby, chosen, goal_settings).outcome
+                outcome = answer_from_store(nearby, objective_list, goal_settings).outcome
             outcomes_of[index].append(outcome)
     outcomes = [outcome for index in range(len(outcomes_of)) for outcome in outcomes_of[index]]
     objectives_of_all = dict.fromkeys(objective for outcome in outcomes for objective in outcome.objectives)

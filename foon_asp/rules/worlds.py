@@ -24,8 +24,7 @@ class Worlds(Transformer):
         return atom.update(symbol=self._add_world(atom.symbol))
 
     def _add_world(self, symbol: AST) -> AST:
-        """Return the symbol of an atom; if its predicate differs between worlds, with a variable for the
-        world.
+        """Return the symbol of an atom with the world variable, if its predicate differs between worlds.
 
         The variable becomes the first argument, and the name gets the prefix. In a pool, each atom is
         changed. Symbols of other predicates are returned unchanged.
