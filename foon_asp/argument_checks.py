@@ -50,8 +50,8 @@ def checker(
     It raises :class:`UserError` for a value that its annotation does not allow. It raises ``TypeError`` for
     arguments that do not fit the ``signature``, by default that of ``function``.
 
-    Annotations that are strings allow all values. Keys and values of mappings are not checked, nor are items
-    of iterators, since these can be read only once.
+    Default values are not checked. Annotations that are strings allow all values. Keys and values of mappings
+    are not checked, nor are items of iterators, since these can be read only once.
     """
     expected_signature = signature or inspect.signature(function)
     annotations = {name: parameter.annotation for name, parameter in expected_signature.parameters.items()}
@@ -106,7 +106,10 @@ def _is_of_several_values(origin: Any) -> bool:
 
 
 def _allowed_values(annotation: Any) -> Iterator[str]:
-    """Yield the values that an annotation allows, in words: ``a whole number``, ``text``."""
+    """Yield the values that an annotation allows, in words: ``a whole number``, ``text``.
+
+    ``None`` is left out. Words may be repeated.
+    """
     origin, arguments = typing.get_origin(annotation), typing.get_args(annotation)
     if origin is typing.Annotated:
         yield from _allowed_values(arguments[0])

@@ -55,6 +55,8 @@ def solve_nearby_under(
     Without a proof, the bound is the optimum without rules.
 
     Return ``None`` if no tree was found or the method does not apply: the caller then reads all units.
+
+    ``reporter`` receives warnings about the rules, and of the trees only one that is proved optimal.
     """
     if not settings.constraints or reach_of_rules(settings) is ReachOfRules.ALL:
         return None
@@ -151,8 +153,9 @@ class _Search:
         The units are those of the optimum without rules, and the nearest units of each kind.
         ``is_required``: for each kind, whether the rules always require a unit of it.
 
-        If no tree is found, the status of the outcome is ``infeasible`` if a required kind has no unit that
-        can execute. Otherwise it is ``unknown``.
+        The first tree becomes the incumbent, and ends the search; so does a limit. If no tree is found, the
+        status of the outcome is ``infeasible`` if a required kind has no unit that can execute. Otherwise it
+        is ``unknown``. Raises :class:`LimitError` at a limit while the store is read.
         """
         unconstrained_units = _whole_unit_ids(self._unconstrained)
         for max_units, max_steps in NEARBY.widths:
@@ -196,7 +199,8 @@ class _Search:
         """Read all units for the goals that can be in a tree that costs at most ``costs``.
 
         Return their ids in the whole network, maybe with a few more units. Return ``None`` if more than
-        :attr:`NearbyTuning.max_units` units were read, or if the relaxation gives no lower bound.
+        :attr:`NearbyTuning.max_units` units were read, or if the relaxation gives no lower bound. Raises
+        :class:`LimitError` at a limit.
         """
         nearby, deadline = self._nearby, self._settings.effective_deadline
         while nearby.unit_count <= NEARBY.max_units:

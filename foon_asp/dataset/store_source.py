@@ -82,7 +82,7 @@ class StoreSource(DataSource):
 
     @contextmanager
     def _add_reading_time(self) -> Iterator[None]:
-        """Add the time of a ``with`` block to :attr:`seconds`."""
+        """Add the time of a ``with`` block to :attr:`seconds`, unless the block raises an exception."""
         began = time.perf_counter()
         yield
         self.seconds += time.perf_counter() - began

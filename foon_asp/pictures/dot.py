@@ -46,8 +46,8 @@ def dot_text(drawing: Drawing) -> str:
     """
     if drawing.graph and drawing.unit_count > BOXED_UNITS:
         return graph_text(drawing)
-    labels = (_node_line(box, (*box.head, *box.details), _ROLE_ATTRIBUTES[box.role]) for box in drawing.boxes)
-    return _digraph_text(drawing, _BOX_DEFAULTS, [*_legend_lines(drawing), *labels])
+    nodes = (_node_line(box, (*box.head, *box.details), _ROLE_ATTRIBUTES[box.role]) for box in drawing.boxes)
+    return _digraph_text(drawing, _BOX_DEFAULTS, [*_legend_lines(drawing), *nodes])
 
 
 def graph_text(drawing: Drawing, max_names: int = 24) -> str:
@@ -72,7 +72,7 @@ def graph_text(drawing: Drawing, max_names: int = 24) -> str:
 
 
 def _digraph_text(drawing: Drawing, defaults: str, nodes: Iterable[str]) -> str:
-    """Return a graph in DOT: the caption of a drawing, ``nodes``, and the arrows of the drawing.
+    """Return a graph in DOT: the caption of a drawing, wrapped, then ``nodes``, then its arrows.
 
     ``defaults`` and ``nodes`` are lines of DOT.
     """

@@ -120,7 +120,7 @@ def draw_plan(
     A node may have several copies. A copy is identified by its node and the position of the step that made
     it, from 0. The position is ``None`` for the kitchen, and -1 if nothing makes the node.
 
-    ``sources``: for each unit, these positions by input.
+    ``sources``: for each unit, these positions by input; an input that is left out counts as ``None``.
     ``goal_sources``: these positions by goal.
 
     A copy that a step makes and a later step or a goal takes is one box, and so is a node that nothing makes.
@@ -132,12 +132,12 @@ def draw_plan(
         motion = canvas.add_box(Role.MOTION, f"{number + 1}. {unit.motion}")
         for node in unit.inputs:
             achiever, role = copies.get(node), Role.KITCHEN if node in kitchen else Role.OBJECT
-            copy = (
+            input_box = (
                 canvas.add_box(role, node.label, node)
                 if achiever is None
                 else canvas.shared_box(node, achiever)
             )
-            canvas.arrows.append((copy, motion))
+            canvas.arrows.append((input_box, motion))
         for node in unit.outputs:
             if (node, number) in consumed:
                 canvas.arrows.append((motion, canvas.shared_box(node, number)))
@@ -177,7 +177,7 @@ class _Canvas:
         self.arrows: list[tuple[str, str]] = []
 
     def add_box(self, role: Role, label: str, node: ObjectNode | None = None, unit: int | None = None) -> str:
-        """Add a box, and return its name."""
+        """Add a box, and return its new name, such as ``m0`` for a motion and ``o1`` for a node."""
         name = f"{'m' if node is None else 'o'}{len(self._boxes)}"
         self._boxes.append(Box(name, role, label, node, unit))
         return name
@@ -198,7 +198,10 @@ class _Canvas:
         return self._names[node, achiever]
 
     def finished_drawing(self, caption: Iterable[str]) -> Drawing:
-        """Return the drawing with all boxes and arrows that were added."""
+        """Return the drawing with all boxes and arrows that were added.
+
+        Characters of the caption that cannot be printed are replaced; see :func:`replace_unprintable`.
+        """
         return Drawing(tuple(map(replace_unprintable, caption)), tuple(self._boxes), tuple(self.arrows))
 
 

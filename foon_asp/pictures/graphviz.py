@@ -51,6 +51,8 @@ def layout_json(drawing: Drawing) -> dict[str, Any]:
 def network_coordinates(drawing: Drawing) -> dict[str, tuple[float, float]]:
     """Return x and y of each box of the drawing of a network, by the name of the box, in pixels of the page.
 
+    The layout is that of :func:`graph_text`, for a network of any size up to :data:`MAX_UNITS` units.
+
     Raises :class:`UserError` as :func:`svg_picture` does.
     """
     lines = _run_graphviz(drawing, graph_text(drawing), "plain").decode().splitlines()

@@ -72,6 +72,8 @@ def run_in_processes(
 ) -> "Iterator[FinishedTask[Task, Answer]]":
     """Run tasks in up to ``jobs`` child processes; yield each task when it is finished, in any order.
 
+    Processes start at the first ``next``. Each later task is taken from ``tasks`` when a process is free.
+
     ``make_task_function``: called once in each process; it returns the function that does the tasks.
     ``seconds``: a function that returns the time limit of a task, or ``None`` for no limit. The time of the
     first task of a process begins when ``make_task_function`` has returned.

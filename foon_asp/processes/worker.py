@@ -104,7 +104,10 @@ class Worker(PythonProcess):
             deadline.check()
 
     def end(self) -> int:
-        """Kill the process and the processes that it has started; return its exit code."""
+        """Kill the process and the processes that it has started; return its exit code.
+
+        The worker is never ready again.
+        """
         self._busy = True
         return super().end()
 
