@@ -266,8 +266,8 @@ class Deadline:
 
         This time is half a second after the time limit, a proof or ctrl-C. It is a quarter of a second after
         a cancel, and 0.1 seconds after the memory limit. For the deadline of :func:`stoppable`, all but the
-        last are three times as long. After a proof, ctrl-C or the memory limit, it begins when this property
-        is first read.
+        last are three times as long. After a proof, ctrl-C or the memory limit, the time begins when this
+        property is first read.
         """
         if not self.passed:
             return False
@@ -406,7 +406,7 @@ def resend_lost_interrupts() -> Iterator[None]:
 def uninterrupted() -> Iterator[None]:
     """Defer ctrl-C and interrupts of :class:`Watch` in a ``with`` block until its end.
 
-    Several of ctrl-C become one. In a thread that is not the main one, only interrupts of a watch are
+    Several interrupts become one. In a thread that is not the main one, only interrupts of a watch are
     deferred.
 
     Imports need this: a C library that is interrupted during its import raises ``ImportError``, and cannot be

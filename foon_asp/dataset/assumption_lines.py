@@ -11,7 +11,7 @@ from foon_asp.text.assumed_goals import MARKED
 def kitchen_lines(dataset: Dataset, problems: Iterable[Problem], verbose: bool) -> Iterator[str]:
     """Yield a line on the assumed starting kitchen, with the number of its items that problems can use.
 
-    The line also names the first six of these items that some unit makes, and how many more there are. With
+    The line also names the first six used items that some unit makes, and how many more there are. With
     ``verbose``, a line for each of the items follows, which says whether some unit makes the item.
     """
     used_items = {

@@ -75,7 +75,8 @@ def items_of(
 ) -> UsedUp | None:
     """Return how items are used up, or ``None`` if they last.
 
-    Its stock has the copies that the kitchen states of items that it still has, changed by ``stock``.
+    The stock of the result has the copies that the kitchen states. Items that the kitchen lacks by now are
+    left out.
 
     ``items``: ``used-up`` or ``lasting``.
     ``stock``: numbers of copies of kitchen items, which replace those that the kitchen states.
@@ -145,8 +146,7 @@ def _read_stock_copies(dataset: Dataset, stock: Stock) -> dict[ObjectNode, int]:
     """Return the number of copies in the stock, by object node; it may be 0.
 
     ``stock`` is the path of a file, or a mapping of names. Names with ``None`` as their number are left out.
-    Raises :class:`UserError` for a node that the
-    kitchen lacks.
+    Raises :class:`UserError` for a node that the kitchen lacks.
     """
     if isinstance(stock, str | PathLike):
         copies = read_stock(Path(stock))

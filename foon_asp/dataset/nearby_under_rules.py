@@ -48,7 +48,7 @@ def solve_nearby_under(
 ) -> Outcome | None:
     """Solve a problem of a large store under rules, reading units near the goals and units for the rules.
 
-    Return one of these outcomes:
+    Return one of the following outcomes:
     - a proved optimum, or a proof that no tree keeps the rules,
     - at a limit or ctrl-C, the best tree so far or an outcome without a tree, with ``stopped`` set,
     - a tree that may not be optimal.
@@ -255,7 +255,10 @@ def _whole_unit_ids(outcome: Outcome) -> list[int]:
 
 
 def _outcome_without_tree(nearby: Nearby, unconstrained: Outcome) -> Outcome:
-    """Return an outcome of unknown status; of ``unconstrained``, it has the bound on the first objective."""
+    """Return ``unconstrained`` without its tree and proof, of unknown status, over the problem of ``nearby``.
+
+    It keeps only the bound on the first objective, and the limit that stopped it, if any.
+    """
     first_objective = levels(unconstrained.objectives)[0]
     bounds = {
         objective: bound for objective, bound in unconstrained.bounds.items() if objective == first_objective

@@ -113,7 +113,7 @@ class StoreSource(DataSource):
         available: Container[int],
         max_units: int | None,
     ) -> Cone:
-        """Read and return the cone of goals; with ``max_units``, only about so many units near the goals.
+        """Read and return the cone of goals; with ``max_units``, only about that many units near the goals.
 
         See :meth:`DataSource.cone` for the parameters.
         """

@@ -130,7 +130,7 @@ _idle: dict[Hashable, Any] = {}
 def take_worker(key: Hashable, start: Callable[[], W]) -> W:
     """Return the idle worker of a key, which is then no longer idle.
 
-    If there is none, or if it has died, return a new one, which ``start`` starts.
+    If the key has no idle worker, or if its worker has died, return a new one, which ``start`` starts.
     """
     worker: W | None = _idle.pop(key, None)
     if worker is not None and worker.is_ready:

@@ -189,8 +189,8 @@ class Desk:
     def answer_regret(self, form: RegretForm, token: Cancel, send_event: SendEvent) -> None:
         """Send the regret of a unit or kitchen item: how much worse the optimum is without it.
 
-        The rules of the page count. The regret is sent as an event of kind ``without``, once the question
-        before it has ended.
+        The rules are those of the page of the form. The regret is sent as an event of kind ``without``, once
+        the question before it has ended.
 
         Errors are sent, and not raised:
         - if the page of the form is no longer kept,
