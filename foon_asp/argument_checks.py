@@ -76,9 +76,9 @@ def checker(
 def _is_allowed(annotation: Any, value: object) -> bool:
     """Whether an annotation allows a value, as far as that can be checked at runtime.
 
-    Items are checked of lists, tuples and sets only. A text is not several values.
-    ``float`` allows integers, and neither ``float`` nor ``int`` allows ``True`` and ``False``.
-    Annotations that are no types, such as strings, allow all values.
+    Only items of lists, tuples and sets are checked. A text does not count as several values. ``float``
+    allows integers, and neither ``float`` nor ``int`` allows ``True`` and ``False``. Annotations that are no
+    types, such as strings, allow all values.
     """
     origin, arguments = typing.get_origin(annotation), typing.get_args(annotation)
     if origin in {typing.Union, types.UnionType, typing.Annotated}:

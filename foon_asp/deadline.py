@@ -463,7 +463,8 @@ class Watch:
     def __enter__(self) -> Self:
         """Set the current work, and start the background thread if the question has any limit.
 
-        Raises :class:`LimitError` if the deadline allows no more work.
+        Raises :class:`LimitError` if the deadline has passed; with ``late``, only if it is overdue or memory
+        stopped the question. With ``grace``, nothing is raised here.
         """
         deadline = self._deadline
         deadline.doing = self._doing

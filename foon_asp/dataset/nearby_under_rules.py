@@ -183,7 +183,8 @@ class _Search:
         ``kinds``: the kinds of requests; ``None`` if the rules may require any unit.
 
         Return ``None`` if ``best_outcome`` has no tree, or if there are more than
-        :attr:`NearbyTuning.max_units` units near the goals or far from them.
+        :attr:`NearbyTuning.max_units` units near the goals or far from them. Raises :class:`LimitError` at a
+        limit.
         """
         if best_outcome.costs is None or best_outcome.units is None:
             return None

@@ -45,12 +45,14 @@ def read_store(files: DataFiles, level: int) -> Dataset:
     prices = source.prices
     if files.unit_prices:
         price_list = read_unit_prices(files.unit_prices)
-        units = {unit: price for unit, price in price_list.units.items() if store.unit_id(unit) is not None}
+        matched_prices = {
+            unit: price for unit, price in price_list.units.items() if store.unit_id(unit) is not None
+        }
         warnings += [
             unit_price_warning(unit, price_list.sources[unit])
-            for unit in price_list.units.keys() - units.keys()
+            for unit in price_list.units.keys() - matched_prices.keys()
         ]
-        prices = DataPrices(price_list.motions, units)
+        prices = DataPrices(price_list.motions, matched_prices)
     dataset = Dataset(
         source,
         Kitchen(source.kitchen),

@@ -58,11 +58,11 @@ def graph_text(drawing: Drawing, max_names: int = 24) -> str:
     """
     degrees = Counter(name for arrow in drawing.arrows for name in arrow)
     objects = [box for box in drawing.boxes if box.node is not None]
-    named = {box.name for box in sorted(objects, key=lambda box: -degrees[box.name])[:max_names]}
+    named_boxes = {box.name for box in sorted(objects, key=lambda box: -degrees[box.name])[:max_names]}
     motions = [box.name for box in drawing.boxes if box.node is None]
     lines = [f"  {' -> '.join(motions)} [style=invis]"]  # neighbours in a file are close to each other
-    for box in sorted(drawing.boxes, key=lambda box: box.name in named):  # names are painted last
-        label = box.head if box.name in named else ()
+    for box in sorted(drawing.boxes, key=lambda box: box.name in named_boxes):  # names are painted last
+        label = box.head if box.name in named_boxes else ()
         colors = _ROLE_ATTRIBUTES[box.role].partition(", penwidth")[0]
         attributes = f"{colors}, fontsize=24, fontcolor=black, style=filled"
         shape = "circle" if box.node else "square"

@@ -167,7 +167,10 @@ def draw_network(
 
 
 class _Canvas:
-    """A drawing in construction, which collects boxes and arrows and numbers the boxes."""
+    """A drawing in construction, which collects boxes and arrows and numbers the boxes.
+
+    The ``kitchen`` and the ``goals`` determine the roles of shared boxes.
+    """
 
     def __init__(self, kitchen: Collection[ObjectNode], goals: Collection[ObjectNode]) -> None:
         self._kitchen = kitchen

@@ -67,8 +67,8 @@ def _pair_html(row: Row) -> str:
     unit_a, unit_b, differences = row
     column_a = _unit_html(unit_a, {(difference.kind, difference.a) for difference in differences})
     column_b = _unit_html(unit_b, {(difference.kind, difference.b) for difference in differences})
-    items = "".join(f"<li>{_difference_html(difference)}</li>" for difference in differences)
-    return f'<div class="pair">{column_a}{column_b}{f"<ul>{items}</ul>" if items else ""}</div>'
+    list_items = "".join(f"<li>{_difference_html(difference)}</li>" for difference in differences)
+    return f'<div class="pair">{column_a}{column_b}{f"<ul>{list_items}</ul>" if list_items else ""}</div>'
 
 
 def _difference_html(difference: UnitDifference) -> str:

@@ -147,6 +147,8 @@ def _next_message(workers: "dict[int, _Worker[Any]]", messages: _Messages) -> tu
 class _Worker(PythonProcess, Generic[Task]):
     """A process that does tasks, and its current ``task``, which has to be finished by ``end_by``.
 
+    The constructor starts the process, and sends it the function and the first task.
+
     ``packed_maker``: the message with the function that makes the task function.
     ``number``: identifies the process in ``messages``.
     ``messages``: the queue of the messages of all processes.
