@@ -129,8 +129,8 @@ def load(
 def _progress_counter(on_progress: OnProgress | None, total: int) -> Iterator[Callable[[int], None]]:
     """Yield a function for a ``with`` block that adds a number to the progress, and reports the sum.
 
-    At the end of the block, the progress is reported as complete, if it was not before, and if the block
-    raised no exception. ``total`` is 0 if it is unknown. Without ``on_progress``, nothing is reported.
+    At the end of the block, the progress is reported as complete, unless it was before or the block raised an
+    exception. ``total`` is 0 if it is unknown. Without ``on_progress``, nothing is reported.
     """
     done = 0
 

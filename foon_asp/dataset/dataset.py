@@ -630,8 +630,8 @@ class Dataset:
         """Return the problem of goals, by id and in this order, under the container rule ``containers``.
 
         Of a store, its network has only the units that the goals can need; with ``everything``, all units. Of
-        data in memory, it has all units in any case. If there are stand-ins, they are units of the network,
-        too; with ``everything``, also those that no goal needs.
+        data in memory, it has all units in any case. Stand-ins, if any, are also units of the network; with
+        ``everything``, even those that no goal needs.
 
         ``items`` says how items are used up; ``None`` if items last. Then the goals can also need units that
         make items of the stock, since these may run out.

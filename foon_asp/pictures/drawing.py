@@ -87,7 +87,7 @@ def draw_tree(
     makes under the container rule; ``None`` if each makes all its outputs.
 
     A kitchen item is a separate box at every use, since one shared box of the knife would connect everything.
-    A by-product is a separate box, too. An output is a by-product in three cases: it is neither a goal nor an
+    A by-product is also a separate box. An output is a by-product in three cases: it is neither a goal nor an
     input of a unit, it is available without the unit, or the container rule does not count it as made. It is
     available if the kitchen has it or an earlier step has made it.
     """
@@ -123,8 +123,8 @@ def draw_plan(
     ``sources``: for each unit, these positions by input; an input that is left out counts as ``None``.
     ``goal_sources``: these positions by goal.
 
-    A copy that a step makes and a later step or a goal takes is one box, and so is a node that nothing makes.
-    All other copies are separate boxes. Each goal has a box, also if no unit takes or makes it.
+    A copy is one box if a step makes it, and a later step or a goal takes it. A node that nothing makes is
+    also one box. All other copies are separate boxes. Each goal has a box, also if no unit takes or makes it.
     """
     canvas = _Canvas(kitchen, goal_sources.keys())
     consumed = {copy for step in (*sources, goal_sources) for copy in step.items()}

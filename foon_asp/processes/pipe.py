@@ -40,7 +40,7 @@ def write(pipe: RawIOBase, content: bytes) -> None:
 def write_if_open(pipe: RawIOBase, content: bytes) -> None:
     """Write all of ``content``. Do nothing if the other end is closed.
 
-    The thread that reads from the process notices that, too.
+    The thread that reads from the process also notices that it is closed.
     """
     with contextlib.suppress(OSError, ValueError):
         write(pipe, content)

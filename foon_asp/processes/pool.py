@@ -79,8 +79,8 @@ def run_in_processes(
     first task of a process begins when ``make_task_function`` has returned.
 
     An exception that a task raises is not raised here; it is in :attr:`FinishedTask.error`. If a process dies
-    or exceeds the time, the error of its task is a :class:`LostError`, and another process is started for the
-    next task. All processes are ended when the iterator is closed.
+    or exceeds the time, the error of its task is a :class:`LostError`. The next task then gets a new process.
+    All processes are ended when the iterator is closed.
     """
     packed_maker, remaining_tasks, messages = pack_message(make_task_function), iter(tasks), _Messages()
     workers: dict[int, _Worker[Task]] = {}
