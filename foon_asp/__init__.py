@@ -47,7 +47,10 @@ _names: dict[str, str] = {}  # the modules of all public names, filled at the fi
 
 
 def modules_of_names() -> dict[str, str]:
-    """Return the module of each public name, relative to this package: ``questions.answer`` of ``Answer``."""
+    """Return the module of each public name, relative to this package: ``questions.answer`` of ``Answer``.
+
+    The dictionary is made at the first call, and shared by all callers.
+    """
     if not _names:
         from foon_asp.questions.index import INDEX, module_name  # noqa: PLC0415 (importing it delays ctrl-C)
 
@@ -61,7 +64,7 @@ def modules_of_names() -> dict[str, str]:
 def __getattr__(name: str) -> object:
     """Import the module of a public name, and return what has this name.
 
-    Raises ``AttributeError`` for any other name.
+    For ``__all__``, return the public names. Raises ``AttributeError`` for any other name.
     """
     if name == "__all__":
         return [*modules_of_names()]

@@ -50,8 +50,8 @@ def checker(
     It raises :class:`UserError` for a value that its annotation does not allow. It raises ``TypeError`` for
     arguments that do not fit the ``signature``, by default that of ``function``.
 
-    Annotations that are strings allow all values. Keys and values of mappings are not checked, nor are items
-    of iterators, since these can be read only once.
+    Default values are not checked. Annotations that are strings allow all values. Keys and values of mappings
+    are not checked, nor are items of iterators, since these can be read only once.
     """
     expected_signature = signature or inspect.signature(function)
     annotations = {name: parameter.annotation for name, parameter in expected_signature.parameters.items()}
@@ -76,9 +76,9 @@ def checker(
 def _is_allowed(annotation: Any, value: object) -> bool:
     """Whether an annotation allows a value, as far as that can be checked at runtime.
 
-    Items are checked of lists, tuples and sets only. A text is not several values.
-    ``float`` allows integers, and neither ``float`` nor ``int`` allows ``True`` and ``False``.
-    Annotations that are no types, such as strings, allow all values.
+    Only items of lists, tuples and sets are checked. A text does not count as several values. ``float``
+    allows integers, and neither ``float`` nor ``int`` allows ``True`` and ``False``. Annotations that are no
+    types, such as strings, allow all values.
     """
     origin, arguments = typing.get_origin(annotation), typing.get_args(annotation)
     if origin in {typing.Union, types.UnionType, typing.Annotated}:
@@ -106,7 +106,10 @@ def _is_of_several_values(origin: Any) -> bool:
 
 
 def _allowed_values(annotation: Any) -> Iterator[str]:
-    """Yield the values that an annotation allows, in words: ``a whole number``, ``text``."""
+    """Yield the values that an annotation allows, in words: ``a whole number``, ``text``.
+
+    ``None`` is left out. Words may be repeated.
+    """
     origin, arguments = typing.get_origin(annotation), typing.get_args(annotation)
     if origin is typing.Annotated:
         yield from _allowed_values(arguments[0])

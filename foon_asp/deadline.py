@@ -266,7 +266,8 @@ class Deadline:
 
         This time is half a second after the time limit, a proof or ctrl-C. It is a quarter of a second after
         a cancel, and 0.1 seconds after the memory limit. For the deadline of :func:`stoppable`, all but the
-        last are three times as long.
+        last are three times as long. After a proof, ctrl-C or the memory limit, the time begins when this
+        property is first read.
         """
         if not self.passed:
             return False
@@ -405,6 +406,9 @@ def resend_lost_interrupts() -> Iterator[None]:
 def uninterrupted() -> Iterator[None]:
     """Defer ctrl-C and interrupts of :class:`Watch` in a ``with`` block until its end.
 
+    Several interrupts become one. In a thread that is not the main one, only interrupts of a watch are
+    deferred.
+
     Imports need this: a C library that is interrupted during its import raises ``ImportError``, and cannot be
     imported any more.
     """
@@ -459,7 +463,8 @@ class Watch:
     def __enter__(self) -> Self:
         """Set the current work, and start the background thread if the question has any limit.
 
-        Raises :class:`LimitError` if the deadline allows no more work.
+        Raises :class:`LimitError` if the deadline has passed; with ``late``, only if it is overdue or memory
+        stopped the question. With ``grace``, nothing is raised here.
         """
         deadline = self._deadline
         deadline.doing = self._doing
@@ -480,7 +485,8 @@ class Watch:
     ) -> None:
         """Stop the background thread; raises :class:`LimitError` if it has sent an interrupt.
 
-        Any other interrupt is ctrl-C: it stops the deadline, and is passed on.
+        An interrupt that was sent, and has not arrived, is awaited for up to a second. Any other interrupt is
+        ctrl-C: it stops the deadline, and is passed on.
         """
         received = kind is not None and issubclass(kind, KeyboardInterrupt)
         while True:  # an interrupt may come within this loop, which can be repeated
@@ -608,6 +614,8 @@ def parse_seconds(number: float | str, quantity: str = "the time limit") -> floa
 
 def parse_memory_size(number: int | str, quantity: str = "the memory limit") -> int:
     """Return a size in bytes, from an integer or a text such as ``500M`` or ``2.5G``; ``K`` is 1024 bytes.
+
+    Small letters and a following ``B`` or ``iB`` make no difference: ``500MiB``, ``500mb``.
 
     Raises :class:`UserError` for other values, also 0; ``quantity`` says in the message what they are.
     """

@@ -129,12 +129,13 @@ def load(
 def _progress_counter(on_progress: OnProgress | None, total: int) -> Iterator[Callable[[int], None]]:
     """Yield a function for a ``with`` block that adds a number to the progress, and reports the sum.
 
-    At the end of the block, the progress is reported as complete, if it was not before. ``total`` is 0 if it
-    is unknown. Without ``on_progress``, nothing is reported.
+    At the end of the block, the progress is reported as complete, unless it was before or the block raised an
+    exception. ``total`` is 0 if it is unknown. Without ``on_progress``, nothing is reported.
     """
     done = 0
 
     def report(added: int) -> None:
+        """Add a number to the progress, and report the sum."""
         nonlocal done
         done += added
         if on_progress is not None:
@@ -151,7 +152,7 @@ def _time_limit_context(
     """Return a context that stops its ``with`` block at a time limit or by a token.
 
     ``None`` for ``time_limit`` is no limit, and for both, the context does nothing. ``doing`` is the work for
-    messages.
+    messages. Raises :class:`UserError` for a time limit that is no number of seconds.
     """
     if time_limit is None and cancel is None:
         return contextlib.nullcontext()

@@ -10,7 +10,10 @@ _PACKAGE = Path(__file__).resolve().parent
 
 @cache
 def _folder_with_file(name: str, expected_file: str) -> Path:
-    """Return the folder ``name`` that has the expected file; raises :class:`BugError` if there is none."""
+    """Return the folder ``name`` that has the expected file, in this package or else beside it.
+
+    Raises :class:`BugError` if neither has it.
+    """
     for parent in (_PACKAGE, _PACKAGE.parent):
         if (parent / name / expected_file).is_file():
             return parent / name

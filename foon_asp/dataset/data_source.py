@@ -143,7 +143,7 @@ class DataSource:
         """Return the prices that a store has for single units of ``network``; ``None`` if there are none.
 
         With ``from_file``, prices of the imported file take precedence over the prices that the imported
-        networks state. Otherwise, only the latter are returned.
+        networks state. Otherwise, only the prices that the imported networks state are returned.
         """
         return None
 

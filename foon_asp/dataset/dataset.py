@@ -134,7 +134,10 @@ class Dataset:
 
     @classmethod
     def of(cls, data: Data, seconds: float = 0.0) -> Self:
-        """Return the dataset of data that are in memory; ``seconds`` is how long reading them took."""
+        """Return the dataset of data in memory; ``seconds`` is how long reading took.
+
+        The amounts of kitchen items become the stock. The warnings of ``data`` do not become remarks.
+        """
         return cls(
             DataSource(data.network, seconds, data.left_out, data.repeated, data.amounts),
             Kitchen(data.kitchen),
@@ -190,7 +193,11 @@ class Dataset:
         return self._data_with(network, frozenset(kitchen))
 
     def _data_with(self, network: Network, kitchen: frozenset[int]) -> Data:
-        """Return the data of this dataset with another network, and with a kitchen of ids in this network."""
+        """Return the data of this dataset with another network, and with a kitchen of ids in this network.
+
+        The prices are those of units of this network. The entries of the kitchen file and the warnings are
+        empty.
+        """
         return Data(
             network,
             kitchen,
@@ -309,7 +316,8 @@ class Dataset:
     def with_kitchen(self, items: Sequence[ListedObject]) -> "Dataset":
         """Return the same data with another kitchen: the nodes that match entries of a kitchen file.
 
-        The amounts in these entries become the stock. Entries that match no node are ignored.
+        The amounts in these entries become the stock. Entries that match no node are ignored. The remarks are
+        dropped, and the kitchen counts as given.
         """
         names = self.names
         patterns = [pattern_at_level(item.pattern, names.level) for item in items]
@@ -328,11 +336,17 @@ class Dataset:
         }
 
     def with_goals(self, goals: Sequence[ListedObject]) -> "Dataset":
-        """Return the same data with these entries as its goals file; no goals are assumed then."""
+        """Return the same data with these entries as its goals file, and without remarks.
+
+        No goals are assumed then.
+        """
         return self._with_fields(goal_entries=tuple(goals), goals_from="", has_kitchen=self.has_kitchen)
 
     def with_starting_kitchen(self) -> "Dataset":
-        """Return the same data with the starting kitchen."""
+        """Return the same data with the starting kitchen, without a stock and without remarks.
+
+        The kitchen then counts as given.
+        """
         kitchen = Kitchen(self.source.starting_kitchen.nodes)
         return self._with_fields(kitchen=kitchen, kitchen_items=(), starting=True, stock={})
 
@@ -367,8 +381,9 @@ class Dataset:
         """
         goals = self.goal_entries
         if table is not None and self.goals_from and len(goals) > 1:
-            copies = next(iter(self.whole_network.sources), ())
-            goals = [goal for goal in goals if copies and goal.source.file == copies[0].file] or goals
+            first_unit_sources = next(iter(self.whole_network.sources), ())
+            first_file = first_unit_sources[0].file if first_unit_sources else None
+            goals = [goal for goal in goals if goal.source.file == first_file] or goals
         return replace(self, stand_ins=table, goal_entries=goals)
 
     def with_kitchen_changes(
@@ -381,7 +396,7 @@ class Dataset:
 
         If there is a ``replacement``, its nodes first take the place of the whole kitchen, and no item has a
         stock. With ``None``, the kitchen is kept, with the stock of all items that are not added. Added nodes
-        never run out.
+        never run out. The remarks are dropped, and the kitchen counts as given.
         """
         if replacement is not None:
             kitchen = Kitchen(replacement, added, removed)
@@ -395,9 +410,9 @@ class Dataset:
     ) -> "Dataset":
         """Return the same data with some success rates and some prices replaced or added.
 
-        ``rates`` are by motion, ``unit_prices`` by motion or unit. ``None`` for one of them keeps all. A
-        kitchen that was assumed still counts as assumed. Raises :class:`UserError` as :func:`changed_rates`
-        and :func:`changed_prices` do.
+        ``rates`` are by motion, ``unit_prices`` by motion or unit. ``None`` for one of them keeps all. Unless
+        both are ``None``, the remarks are dropped. A kitchen that was assumed still counts as assumed. Raises
+        :class:`UserError` as :func:`changed_rates` and :func:`changed_prices` do.
         """
         if rates is None and unit_prices is None:
             return self
@@ -413,8 +428,9 @@ class Dataset:
         """Return the same data with changes, as :meth:`foon_asp.Foon.vary` does.
 
         The rates, prices and measures are changed first, then the kitchen is replaced, then items are added,
-        and last removed. Entries of a kitchen file that match no object node cause a warning. Raises
-        :class:`UserError` for an unknown name.
+        and last removed. Numbers of copies, which a new kitchen may have by name, become the stock. Entries
+        of a kitchen file that match no object node cause a warning. Without any change, return this dataset
+        itself. Raises :class:`UserError` for an unknown name.
         """
         kitchen, adding, without, rates, unit_prices, measures = changes
         dataset = self.with_rates_and_prices(rates, unit_prices)
@@ -449,8 +465,10 @@ class Dataset:
     ) -> Problem:
         """Return a variation of a problem over changed data, as :meth:`Problem.vary` describes.
 
-        ``None`` keeps the goals or the container rule of the problem. Items are used up as in the problem;
-        with another kitchen, the stock is that of the other kitchen.
+        The changes begin from the kitchen of the problem. ``None`` keeps its goals or its container rule.
+        Items are used up as in the problem; with another kitchen, the stock is that of the other kitchen. The
+        rates that the problem has for single units are kept. Of a store, only units near the goals are read;
+        see :meth:`nearby`.
         """
         dataset = self.with_kitchen_of(problem).vary(changes)
         ids = _whole_goal_ids(problem) if goals is None else dataset.python_goal_ids(goals)
@@ -461,7 +479,10 @@ class Dataset:
         return _with_own_rates(varied, problem)
 
     def extend_to_whole(self, problem: Problem) -> Problem:
-        """Return the same problem over the whole network, with the units that no goal needs."""
+        """Return the same problem over the whole network, with the units that no goal needs.
+
+        Of a store, everything is read. The rates that the problem has for single units are kept.
+        """
         dataset = self.with_kitchen_of(problem)
         extended = dataset.problem(_whole_goal_ids(problem), problem.containers, True, problem.items)
         return _with_own_rates(extended, problem)
@@ -469,7 +490,8 @@ class Dataset:
     def extend_to_units(self, problem: Problem, units: Iterable[FunctionalUnit]) -> Problem:
         """Return the same problem over a part of the network that has its goals and at least the given units.
 
-        Of a network in memory, the part is the whole network.
+        Units that the network lacks are left out. Of a network in memory, the part is the whole network. The
+        rates that the problem has for single units are kept, if the part has these units.
         """
         dataset = self.with_kitchen_of(problem)
         data, goals = dataset.data_part(_whole_goal_ids(problem), tree=units)
@@ -483,7 +505,8 @@ class Dataset:
         - for a starting kitchen,
         - for prices that are not those of the store, and
         - for a store without digests.
-        Otherwise, the store is read on access and its digests are trusted.
+        Otherwise, the store is read on access and its digests are trusted. The subject then has no prices,
+        only the digests that the store states.
 
         Digests of a kitchen or of prices that are not those of the store are left out. A starting kitchen is
         the one for ``goals``, by id. If some motion has no success rate, the subject has no rates.
@@ -527,6 +550,7 @@ class Dataset:
         The network has these stand-ins:
         - without ``steps``, those for the goals, and with ``everything``, also those that no goal needs;
         - with ``steps``, the ids of the units of a tree, those for the repair of this tree.
+        Without a table of stand-ins, it has none. The subject has no digests of a store.
         """
         from foon_asp.proof.certificate_subject import Subject  # noqa: PLC0415 (few answers need it)
 
@@ -606,8 +630,8 @@ class Dataset:
         """Return the problem of goals, by id and in this order, under the container rule ``containers``.
 
         Of a store, its network has only the units that the goals can need; with ``everything``, all units. Of
-        data in memory, it has all units in any case. If there are stand-ins, they are units of the network,
-        too; with ``everything``, also those that no goal needs.
+        data in memory, it has all units in any case. Stand-ins, if any, are also units of the network; with
+        ``everything``, even those that no goal needs.
 
         ``items`` says how items are used up; ``None`` if items last. Then the goals can also need units that
         make items of the stock, since these may run out.

@@ -75,10 +75,13 @@ def items_of(
 ) -> UsedUp | None:
     """Return how items are used up, or ``None`` if they last.
 
+    The stock of the result has the copies that the kitchen states. Items that the kitchen lacks by now are
+    left out.
+
     ``items``: ``used-up`` or ``lasting``.
     ``stock``: numbers of copies of kitchen items, which replace those that the kitchen states.
     ``stays``: for labels or nodes, whether they stay (true) or are used up, against the usual rule.
-    ``wanted``: the number of copies of each goal.
+    ``wanted``: the number of copies of each goal; the result has only those above 1.
 
     Raises :class:`UserError` for
     - another word as ``items``,
@@ -142,8 +145,8 @@ def _read_exceptions(dataset: Dataset, stays: Stays) -> dict[str | ObjectNode, b
 def _read_stock_copies(dataset: Dataset, stock: Stock) -> dict[ObjectNode, int]:
     """Return the number of copies in the stock, by object node; it may be 0.
 
-    ``stock`` is the path of a file, or a mapping of names. Raises :class:`UserError` for a node that the
-    kitchen lacks.
+    ``stock`` is the path of a file, or a mapping of names. Names with ``None`` as their number are left out.
+    Raises :class:`UserError` for a node that the kitchen lacks.
     """
     if isinstance(stock, str | PathLike):
         copies = read_stock(Path(stock))

@@ -16,7 +16,8 @@ class Kitchen(Collection[int]):
     def with_changes(self, added: Collection[int], removed: Collection[int]) -> "Kitchen":
         """Return this kitchen with further nodes added and removed.
 
-        A node that was removed before can be added again, and a node that was added can be removed.
+        A node that was removed before can be added again, and a node that was added can be removed. If
+        ``added`` and ``removed`` are empty, return this kitchen itself.
         """
         return Kitchen(self, added, removed) if added or removed else self
 

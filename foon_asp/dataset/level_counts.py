@@ -8,8 +8,8 @@ from foon_asp.text.data_folder import Data, kitchen_nodes
 def statistics_by_level(data: Data) -> list[Statistics]:
     """Return the statistics of a network and its kitchen at the levels 1, 2 and 3, in this order.
 
-    At each level, nodes are merged and the kitchen items are matched again. For a network below level 3,
-    return only its statistics at its own level.
+    At each level, nodes are merged, and the kitchen items are matched again or the starting kitchen is
+    determined again. For a network below level 3, return only its statistics at its own level.
     """
     network = data.network
     networks = (

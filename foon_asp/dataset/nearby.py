@@ -123,7 +123,8 @@ class Nearby:
     def grow(self, objects: Iterable[int], step: int) -> None:
         """Read more units that lead to ``objects``, open nodes by id in the whole network.
 
-        With ``n`` units read so far, ``n // step + 1`` more are read: a smaller ``step`` reads more.
+        With ``n`` units read so far, ``n // step + 1`` more are read: a smaller ``step`` reads more. Then
+        :attr:`problem` and :attr:`relaxation` are new problems, with these units and with other local ids.
         """
         self._cone.grow(objects, len(self._cone.units) // step + 1)
         self._problem = self._relaxation = None

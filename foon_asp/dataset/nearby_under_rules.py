@@ -48,13 +48,15 @@ def solve_nearby_under(
 ) -> Outcome | None:
     """Solve a problem of a large store under rules, reading units near the goals and units for the rules.
 
-    Return one of these outcomes:
+    Return one of the following outcomes:
     - a proved optimum, or a proof that no tree keeps the rules,
     - at a limit or ctrl-C, the best tree so far or an outcome without a tree, with ``stopped`` set,
     - a tree that may not be optimal.
     Without a proof, the bound is the optimum without rules.
 
     Return ``None`` if no tree was found or the method does not apply: the caller then reads all units.
+
+    ``reporter`` receives warnings about the rules, and of the trees only one that is proved optimal.
     """
     if not settings.constraints or reach_of_rules(settings) is ReachOfRules.ALL:
         return None
@@ -151,8 +153,9 @@ class _Search:
         The units are those of the optimum without rules, and the nearest units of each kind.
         ``is_required``: for each kind, whether the rules always require a unit of it.
 
-        If no tree is found, the status of the outcome is ``infeasible`` if a required kind has no unit that
-        can execute. Otherwise it is ``unknown``.
+        The first tree becomes the incumbent, and ends the search; so does a limit. If no tree is found, the
+        status of the outcome is ``infeasible`` if a required kind has no unit that can execute. Otherwise it
+        is ``unknown``. Raises :class:`LimitError` at a limit while the store is read.
         """
         unconstrained_units = _whole_unit_ids(self._unconstrained)
         for max_units, max_steps in NEARBY.widths:
@@ -180,7 +183,8 @@ class _Search:
         ``kinds``: the kinds of requests; ``None`` if the rules may require any unit.
 
         Return ``None`` if ``best_outcome`` has no tree, or if there are more than
-        :attr:`NearbyTuning.max_units` units near the goals or far from them.
+        :attr:`NearbyTuning.max_units` units near the goals or far from them. Raises :class:`LimitError` at a
+        limit.
         """
         if best_outcome.costs is None or best_outcome.units is None:
             return None
@@ -196,7 +200,8 @@ class _Search:
         """Read all units for the goals that can be in a tree that costs at most ``costs``.
 
         Return their ids in the whole network, maybe with a few more units. Return ``None`` if more than
-        :attr:`NearbyTuning.max_units` units were read, or if the relaxation gives no lower bound.
+        :attr:`NearbyTuning.max_units` units were read, or if the relaxation gives no lower bound. Raises
+        :class:`LimitError` at a limit.
         """
         nearby, deadline = self._nearby, self._settings.effective_deadline
         while nearby.unit_count <= NEARBY.max_units:
@@ -251,7 +256,10 @@ def _whole_unit_ids(outcome: Outcome) -> list[int]:
 
 
 def _outcome_without_tree(nearby: Nearby, unconstrained: Outcome) -> Outcome:
-    """Return an outcome of unknown status; of ``unconstrained``, it has the bound on the first objective."""
+    """Return ``unconstrained`` without its tree and proof, of unknown status, over the problem of ``nearby``.
+
+    It keeps only the bound on the first objective, and the limit that stopped it, if any.
+    """
     first_objective = levels(unconstrained.objectives)[0]
     bounds = {
         objective: bound for objective, bound in unconstrained.bounds.items() if objective == first_objective

@@ -85,9 +85,9 @@ def stated_copies(
 def item_id(dataset: NamedData, name: str | ObjectNode) -> int:
     """Return the id of a named kitchen item.
 
-    A label means the item that has no more than this label, or if there is none, the only item with the
-    label. Raises :class:`UserError` for a name that is no item, and for a label of several items, with these
-    as candidates.
+    A label means the item that has no more than this label. Without such an item, it means the only item with
+    the label. Raises :class:`UserError` for a name that is no item, and for a label of several items, with
+    these items as candidates. In a store, a label of more than twelve nodes also raises it.
     """
     names = dataset.names
     label = None if isinstance(name, ObjectNode) else _bare_label(name)

@@ -13,9 +13,9 @@ from foon_asp.text.repeated_node import repeated_note
 def read_dataset(files: DataFiles, lenient: bool = False, level: int = 3) -> Dataset:
     """Read text files, or open the store that is named as the network.
 
-    With ``lenient``, lines of text that are not understood are skipped. ``level`` is the level at which nodes
-    are merged. The remarks of the dataset are the assumptions made. Raises :class:`UserError` for input that
-    is not understood.
+    With ``lenient``, lines of text that are not understood are skipped, and a remark says how many. For a
+    store, it makes no difference. ``level`` is the level at which nodes are merged. The remarks of the
+    dataset are the assumptions made. Raises :class:`UserError` for input that is not understood.
     """
     began = time.perf_counter()
     if any(map(is_store, files.network)):

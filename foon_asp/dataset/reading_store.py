@@ -29,8 +29,9 @@ def read_store(files: DataFiles, level: int) -> Dataset:
     """Open the store that is named as the network; other named files replace what was imported.
 
     Below level 3, the whole store is read and closed, since nodes are merged at such a level. Entries of the
-    named files that match nothing in the store become remarks. Raises :class:`UserError` if a second network
-    is named.
+    named files that match nothing in the store become remarks. Other remarks are about motions without a
+    success rate, nodes that a unit lists twice, and lines that were left out of the store. Raises
+    :class:`UserError` if a second network is named.
     """
     if len(files.network) > 1:
         raise UserError(
@@ -44,12 +45,14 @@ def read_store(files: DataFiles, level: int) -> Dataset:
     prices = source.prices
     if files.unit_prices:
         price_list = read_unit_prices(files.unit_prices)
-        units = {unit: price for unit, price in price_list.units.items() if store.unit_id(unit) is not None}
+        matched_prices = {
+            unit: price for unit, price in price_list.units.items() if store.unit_id(unit) is not None
+        }
         warnings += [
             unit_price_warning(unit, price_list.sources[unit])
-            for unit in price_list.units.keys() - units.keys()
+            for unit in price_list.units.keys() - matched_prices.keys()
         ]
-        prices = DataPrices(price_list.motions, units)
+        prices = DataPrices(price_list.motions, matched_prices)
     dataset = Dataset(
         source,
         Kitchen(source.kitchen),

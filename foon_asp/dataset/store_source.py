@@ -82,7 +82,7 @@ class StoreSource(DataSource):
 
     @contextmanager
     def _add_reading_time(self) -> Iterator[None]:
-        """Add the time of a ``with`` block to :attr:`seconds`."""
+        """Add the time of a ``with`` block to :attr:`seconds`, unless the block raises an exception."""
         began = time.perf_counter()
         yield
         self.seconds += time.perf_counter() - began
@@ -113,7 +113,7 @@ class StoreSource(DataSource):
         available: Container[int],
         max_units: int | None,
     ) -> Cone:
-        """Read and return the cone of goals; with ``max_units``, only about so many units near the goals.
+        """Read and return the cone of goals; with ``max_units``, only about that many units near the goals.
 
         See :meth:`DataSource.cone` for the parameters.
         """

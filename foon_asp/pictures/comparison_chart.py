@@ -31,14 +31,14 @@ def write_comparison_chart(comparisons: Sequence[Comparison], conditions: str, f
         f"Functional units of retrieved task trees over the optimum: {counted(len(comparisons), 'goal')} "
         f"({conditions})"
     )
-    write_chart(file, title, 4.2, lambda figure, axes: _draw_boxes(comparisons, figure, axes))
+    write_chart(file, title, 4.2, lambda figure, axes: _draw_chart(comparisons, figure, axes))
 
 
-def _draw_boxes(comparisons: Sequence[Comparison], figure: "Figure", axes: "Axes") -> None:
-    """Draw the box and the points of each search; below it stand its name and statistics.
+def _draw_chart(comparisons: Sequence[Comparison], figure: "Figure", axes: "Axes") -> None:
+    """Draw the whole chart: for each search a box and its points, a line at the optimum, and a legend.
 
-    The color of a point says how its tree executes. A search without points gets no box, but a place on the
-    axis. The figure gets wider for many searches.
+    The name and the statistics of a search stand below its box. The color of a point says how its tree
+    executes. A search without points has only its name and a remark. The figure gets wider for many searches.
     """
     points_by_search: dict[str, list[tuple[float, Verdict]]] = {}
     for comparison in comparisons:

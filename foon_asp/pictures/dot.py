@@ -46,8 +46,8 @@ def dot_text(drawing: Drawing) -> str:
     """
     if drawing.graph and drawing.unit_count > BOXED_UNITS:
         return graph_text(drawing)
-    labels = (_node_line(box, (*box.head, *box.details), _ROLE_ATTRIBUTES[box.role]) for box in drawing.boxes)
-    return _digraph_text(drawing, _BOX_DEFAULTS, [*_legend_lines(drawing), *labels])
+    nodes = (_node_line(box, (*box.head, *box.details), _ROLE_ATTRIBUTES[box.role]) for box in drawing.boxes)
+    return _digraph_text(drawing, _BOX_DEFAULTS, [*_legend_lines(drawing), *nodes])
 
 
 def graph_text(drawing: Drawing, max_names: int = 24) -> str:
@@ -58,11 +58,11 @@ def graph_text(drawing: Drawing, max_names: int = 24) -> str:
     """
     degrees = Counter(name for arrow in drawing.arrows for name in arrow)
     objects = [box for box in drawing.boxes if box.node is not None]
-    named = {box.name for box in sorted(objects, key=lambda box: -degrees[box.name])[:max_names]}
+    named_boxes = {box.name for box in sorted(objects, key=lambda box: -degrees[box.name])[:max_names]}
     motions = [box.name for box in drawing.boxes if box.node is None]
     lines = [f"  {' -> '.join(motions)} [style=invis]"]  # neighbours in a file are close to each other
-    for box in sorted(drawing.boxes, key=lambda box: box.name in named):  # names are painted last
-        label = box.head if box.name in named else ()
+    for box in sorted(drawing.boxes, key=lambda box: box.name in named_boxes):  # names are painted last
+        label = box.head if box.name in named_boxes else ()
         colors = _ROLE_ATTRIBUTES[box.role].partition(", penwidth")[0]
         attributes = f"{colors}, fontsize=24, fontcolor=black, style=filled"
         shape = "circle" if box.node else "square"
@@ -72,7 +72,7 @@ def graph_text(drawing: Drawing, max_names: int = 24) -> str:
 
 
 def _digraph_text(drawing: Drawing, defaults: str, nodes: Iterable[str]) -> str:
-    """Return a graph in DOT: the caption of a drawing, ``nodes``, and the arrows of the drawing.
+    """Return a graph in DOT: the caption of a drawing, wrapped, then ``nodes``, then its arrows.
 
     ``defaults`` and ``nodes`` are lines of DOT.
     """

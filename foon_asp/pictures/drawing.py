@@ -87,7 +87,7 @@ def draw_tree(
     makes under the container rule; ``None`` if each makes all its outputs.
 
     A kitchen item is a separate box at every use, since one shared box of the knife would connect everything.
-    A by-product is a separate box, too. An output is a by-product in three cases: it is neither a goal nor an
+    A by-product is also a separate box. An output is a by-product in three cases: it is neither a goal nor an
     input of a unit, it is available without the unit, or the container rule does not count it as made. It is
     available if the kitchen has it or an earlier step has made it.
     """
@@ -120,11 +120,11 @@ def draw_plan(
     A node may have several copies. A copy is identified by its node and the position of the step that made
     it, from 0. The position is ``None`` for the kitchen, and -1 if nothing makes the node.
 
-    ``sources``: for each unit, these positions by input.
+    ``sources``: for each unit, these positions by input; an input that is left out counts as ``None``.
     ``goal_sources``: these positions by goal.
 
-    A copy that a step makes and a later step or a goal takes is one box, and so is a node that nothing makes.
-    All other copies are separate boxes. Each goal has a box, also if no unit takes or makes it.
+    A copy is one box if a step makes it, and a later step or a goal takes it. A node that nothing makes is
+    also one box. All other copies are separate boxes. Each goal has a box, also if no unit takes or makes it.
     """
     canvas = _Canvas(kitchen, goal_sources.keys())
     consumed = {copy for step in (*sources, goal_sources) for copy in step.items()}
@@ -132,12 +132,12 @@ def draw_plan(
         motion = canvas.add_box(Role.MOTION, f"{number + 1}. {unit.motion}")
         for node in unit.inputs:
             achiever, role = copies.get(node), Role.KITCHEN if node in kitchen else Role.OBJECT
-            copy = (
+            input_box = (
                 canvas.add_box(role, node.label, node)
                 if achiever is None
                 else canvas.shared_box(node, achiever)
             )
-            canvas.arrows.append((copy, motion))
+            canvas.arrows.append((input_box, motion))
         for node in unit.outputs:
             if (node, number) in consumed:
                 canvas.arrows.append((motion, canvas.shared_box(node, number)))
@@ -167,7 +167,10 @@ def draw_network(
 
 
 class _Canvas:
-    """A drawing in construction, which collects boxes and arrows and numbers the boxes."""
+    """A drawing in construction, which collects boxes and arrows and numbers the boxes.
+
+    The ``kitchen`` and the ``goals`` determine the roles of shared boxes.
+    """
 
     def __init__(self, kitchen: Collection[ObjectNode], goals: Collection[ObjectNode]) -> None:
         self._kitchen = kitchen
@@ -177,7 +180,7 @@ class _Canvas:
         self.arrows: list[tuple[str, str]] = []
 
     def add_box(self, role: Role, label: str, node: ObjectNode | None = None, unit: int | None = None) -> str:
-        """Add a box, and return its name."""
+        """Add a box, and return its new name, such as ``m0`` for a motion and ``o1`` for a node."""
         name = f"{'m' if node is None else 'o'}{len(self._boxes)}"
         self._boxes.append(Box(name, role, label, node, unit))
         return name
@@ -198,7 +201,10 @@ class _Canvas:
         return self._names[node, achiever]
 
     def finished_drawing(self, caption: Iterable[str]) -> Drawing:
-        """Return the drawing with all boxes and arrows that were added."""
+        """Return the drawing with all boxes and arrows that were added.
+
+        Characters of the caption that cannot be printed are replaced; see :func:`replace_unprintable`.
+        """
         return Drawing(tuple(map(replace_unprintable, caption)), tuple(self._boxes), tuple(self.arrows))
 
 

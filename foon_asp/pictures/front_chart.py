@@ -39,10 +39,10 @@ def write_front_chart(front: PlottedFront, file: Path) -> None:
     all its values are above 0 and the greatest is more than 50 times the least. Each point shows its value on
     the vertical axis.
 
-    A third objective divides the points into series, one for each of its values; a legend of these values
-    then replaces the values at the points. It is the additive objective with the fewest values. The line of a
-    series is the front of all points with at most the value of the series. An incomplete front has no lines,
-    since a line claims that no tree is beyond it.
+    A third objective divides the points into series, one for each of its values; a legend of its values then
+    replaces the values at the points. The third objective is the additive one with the fewest values. The
+    line of a series is the front of all points with at most the value of the series. An incomplete front has
+    no lines, since a line claims that no tree is beyond it.
 
     Raises :class:`UserError` as :func:`foon_asp.pictures.chart.write_chart` does.
     """
@@ -53,9 +53,9 @@ def write_front_chart(front: PlottedFront, file: Path) -> None:
         series = min(additive, key=lambda objective: len(set(columns[objective])))
         additive.remove(series)
     x, y = additive[0], Objective.SUCCESS if Objective.SUCCESS in front.objectives else additive[1]
-    upwards = multiplies(y)
+    more_is_better = multiplies(y)
     series_of_points = columns[series] if series else [0] * len(front.points)
-    y_texts = success_texts(columns[y]) if upwards else list(map(str, columns[y]))
+    y_texts = success_texts(columns[y]) if more_is_better else list(map(str, columns[y]))
     points = sorted(
         zip(map(float, columns[x]), map(float, columns[y]), series_of_points, y_texts, strict=True)
     )
@@ -65,14 +65,18 @@ def write_front_chart(front: PlottedFront, file: Path) -> None:
         title += "\nstopped at a limit: points may be missing"
 
     def draw(figure: "Figure", axes: "Axes") -> None:
-        """Draw the axes, the points and lines of all series, and a legend or the labels of points."""
+        """Draw the axes, the points of all series, and a legend or the labels of points.
+
+        Each series has a line if the front is complete. The legend is for a third objective; without one,
+        points have labels. The vertical axis is logarithmic as :func:`write_front_chart` says.
+        """
         from matplotlib.ticker import MaxNLocator  # noqa: PLC0415 (slow to import, and not installed by everyone)
 
         axes.set_xlabel(x.row.words)
         axes.set_ylabel(y.row.words)
         axes.margins(0.1, 0.15)
         axes.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
-        if not upwards:
+        if not more_is_better:
             axes.yaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
         elif 0 < 50 * min(columns[y]) < max(columns[y]):  # a linear scale would hide the smallest success
             axes.set_yscale("log")
@@ -81,7 +85,7 @@ def write_front_chart(front: PlottedFront, file: Path) -> None:
             if front.complete:
                 # where lines overlap, all are visible: the greater the value, the wider, and further back
                 xs, ys, *_ = zip(*(point for point in points if point[2] <= value), strict=True)
-                best = list(accumulate(ys, max if upwards else min))
+                best = list(accumulate(ys, max if more_is_better else min))
                 width = 1.2 + 1.8 * number / len(series_values)
                 axes.step(
                     [*xs, points[-1][0] + 0.7], [*best, best[-1]], where="post", linewidth=width, **style
@@ -93,7 +97,7 @@ def write_front_chart(front: PlottedFront, file: Path) -> None:
             name += "\n(lines: at most this value)" if front.complete else ""
             figure.legend(loc="outside right upper", title=name)
             return
-        alignment = "right" if upwards else "left"
+        alignment = "right" if more_is_better else "left"
         for x_value, y_value, _, text in points:  # the value on the x axis can be read off it
             axes.annotate(
                 text.removeprefix("≈ "), (x_value, y_value), (0, 4), textcoords="offset points", ha=alignment

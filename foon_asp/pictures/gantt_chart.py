@@ -27,14 +27,14 @@ def write_gantt(gantt: Gantt, file: Path) -> None:
         file,
         gantt.title,
         len(gantt.rows) * _ROW_INCHES + _MARGIN_INCHES,
-        lambda figure, axes: _draw_bars(gantt, figure, axes),
+        lambda figure, axes: _draw_chart(gantt, figure, axes),
     )
 
 
-def _draw_bars(gantt: Gantt, figure: "Figure", axes: "Axes") -> None:
-    """Draw the chart: a bar for each step, the first step on top, with names, times and a legend of agents.
+def _draw_chart(gantt: Gantt, figure: "Figure", axes: "Axes") -> None:
+    """Draw the chart: a bar and a name for each step, the ticks of the time, and a legend of agents.
 
-    Each agent has a color; steps without an agent are hatched.
+    The first step is on top, with names, times and a legend of agents. Each agent has a color; steps without an agent are hatched.
     """
     rows = gantt.sorted_rows
     agents = sorted({row.agent for row in rows}, key=lambda agent: (agent is None, agent))

@@ -51,6 +51,8 @@ def layout_json(drawing: Drawing) -> dict[str, Any]:
 def network_coordinates(drawing: Drawing) -> dict[str, tuple[float, float]]:
     """Return x and y of each box of the drawing of a network, by the name of the box, in pixels of the page.
 
+    The layout is that of :func:`graph_text`, also for a small network.
+
     Raises :class:`UserError` as :func:`svg_picture` does.
     """
     lines = _run_graphviz(drawing, graph_text(drawing), "plain").decode().splitlines()
@@ -63,8 +65,8 @@ def _run_graphviz(drawing: Drawing, text: str, output_format: str) -> bytes:
     """Return the output of Graphviz in ``output_format``: ``svg``, ``json`` or ``plain``.
 
     ``text`` is the drawing in DOT. A ``dot`` on the PATH is used, or else a Python package. Raises
-    :class:`UserError` for a network of more than :data:`MAX_UNITS` units or another drawing of more than
-    :data:`BOXED_UNITS`, if Graphviz is not installed, and if it fails.
+    :class:`UserError` if Graphviz is not installed, and if it fails. It is also raised for a network of more
+    than :data:`MAX_UNITS` units, and for another drawing of more than :data:`BOXED_UNITS`.
     """
     kind, max_units, advice = "tree", BOXED_UNITS, "look at its page (foon-asp view)"
     if drawing.graph:

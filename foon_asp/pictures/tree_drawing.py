@@ -12,8 +12,8 @@ from foon_asp.proof.simulation import Verdict, simulate
 def plan_drawing(problem: Problem, units: Sequence[FunctionalUnit], caption: str = "") -> Drawing:
     """Return the drawing of a plan in which items are used up; its caption is a title and ``caption``.
 
-    If ``caption`` is empty, the caption says whether the plan executes, under which conditions, and how many
-    units it has.
+    If ``caption`` is empty, the caption says whether the plan executes, and otherwise which node it lacks. It
+    also states the conditions and the number of units.
     """
     replay = replay_for(problem, units)
     sources = [{copy.node: copy.made for copy in (*step.gone, *step.stayed)} for step in replay.steps]

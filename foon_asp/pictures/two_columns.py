@@ -35,8 +35,10 @@ def two_column_page(
     style = web_text("colours_light.css") + web_text("colours_dark.css") + web_text("two_columns.css")
     header, *rows = table_rows
     table = _row_html("th", header) + "".join(_row_html("td", row) for row in rows)
-    columns = "".join(f"<p>{letter}: {_escape(name)}</p>" for letter, name in zip("AB", names, strict=True))
-    body = f'<div class="pair">{columns}</div><table>{table}</table>'
+    name_lines = "".join(
+        f"<p>{letter}: {_escape(name)}</p>" for letter, name in zip("AB", names, strict=True)
+    )
+    body = f'<div class="pair">{name_lines}</div><table>{table}</table>'
     body += "".join(map(_section_html, sections))
     policy = f"default-src 'none'; style-src {digest(style)}; base-uri 'none'; form-action 'none'"
     return (
@@ -65,12 +67,15 @@ def _pair_html(row: Row) -> str:
     unit_a, unit_b, differences = row
     column_a = _unit_html(unit_a, {(difference.kind, difference.a) for difference in differences})
     column_b = _unit_html(unit_b, {(difference.kind, difference.b) for difference in differences})
-    items = "".join(f"<li>{_difference_html(difference)}</li>" for difference in differences)
-    return f'<div class="pair">{column_a}{column_b}{f"<ul>{items}</ul>" if items else ""}</div>'
+    list_items = "".join(f"<li>{_difference_html(difference)}</li>" for difference in differences)
+    return f'<div class="pair">{column_a}{column_b}{f"<ul>{list_items}</ul>" if list_items else ""}</div>'
 
 
 def _difference_html(difference: UnitDifference) -> str:
-    """Return a difference in words as HTML, such as ``state <b>chopped</b> only in A``."""
+    """Return a difference in words as HTML, such as ``state <b>chopped</b> only in A``.
+
+    The node that it is about, if any, comes first.
+    """
     prefix = f"{_escape(difference.of)}: " if difference.of else ""
     sides = [f"<b>{_escape(name)}</b>" for name in (difference.a, difference.b) if name]
     location = (
@@ -103,7 +108,7 @@ def _node_html(node: Node, role: str, marked: set[tuple[str, str | None]]) -> st
     """Return the HTML of a node in one-line notation.
 
     If the node itself, in its role of input or output, is in ``marked``, it is all bold. Otherwise the names
-    in it that are in ``marked`` are bold.
+    in it that are in ``marked`` are bold where they are whole words. Names of motions are not looked for.
     """
     text = str(node)
     if (role, text) in marked:

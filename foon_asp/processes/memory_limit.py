@@ -4,9 +4,10 @@ import contextlib
 
 
 def limit_own_memory(size: int | None) -> None:
-    """Limit the data segment of this process to ``size`` bytes, if the system can; ``None`` removes a limit.
+    """Limit the data segment of this process to ``size`` bytes; ``None`` removes the limit.
 
-    The parent process only polls the memory of this process. Memory may grow too fast for that.
+    Do nothing if the system cannot, or if its own limit is lower. The parent process only polls the memory of
+    this process, and memory may grow too fast for that.
     """
     try:
         import resource  # noqa: PLC0415 (not on every system)

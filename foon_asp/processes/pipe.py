@@ -40,7 +40,7 @@ def write(pipe: RawIOBase, content: bytes) -> None:
 def write_if_open(pipe: RawIOBase, content: bytes) -> None:
     """Write all of ``content``. Do nothing if the other end is closed.
 
-    The thread that reads from the process notices that, too.
+    The thread that reads from the process also notices that it is closed.
     """
     with contextlib.suppress(OSError, ValueError):
         write(pipe, content)
@@ -70,8 +70,8 @@ def become_worker(read: Callable[[RawIOBase], T]) -> "tuple[queue.SimpleQueue[T]
 
     A thread reads requests from standard input, each by ``read``, into the queue. It ends the process once
     its parent has ended, even during a computation, and if memory runs out while it reads. Answers go to what
-    was standard output; anything else that this process prints goes to standard error. Ctrl-C is ignored,
-    since the parent handles it.
+    was standard output; anything else that this process prints goes to standard error. Standard input is
+    empty for all other code. Ctrl-C is ignored, since the parent handles it.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     incoming, answers = FileIO(os.dup(0), "rb"), FileIO(os.dup(1), "wb")

@@ -72,13 +72,15 @@ def run_in_processes(
 ) -> "Iterator[FinishedTask[Task, Answer]]":
     """Run tasks in up to ``jobs`` child processes; yield each task when it is finished, in any order.
 
+    Processes start at the first ``next``. Each later task is taken from ``tasks`` when a process is free.
+
     ``make_task_function``: called once in each process; it returns the function that does the tasks.
     ``seconds``: a function that returns the time limit of a task, or ``None`` for no limit. The time of the
     first task of a process begins when ``make_task_function`` has returned.
 
     An exception that a task raises is not raised here; it is in :attr:`FinishedTask.error`. If a process dies
-    or exceeds the time, the error of its task is a :class:`LostError`, and another process is started for the
-    next task. All processes are ended when the iterator is closed.
+    or exceeds the time, the error of its task is a :class:`LostError`. The next task then gets a new process.
+    All processes are ended when the iterator is closed.
     """
     packed_maker, remaining_tasks, messages = pack_message(make_task_function), iter(tasks), _Messages()
     workers: dict[int, _Worker[Task]] = {}
@@ -144,6 +146,8 @@ def _next_message(workers: "dict[int, _Worker[Any]]", messages: _Messages) -> tu
 
 class _Worker(PythonProcess, Generic[Task]):
     """A process that does tasks, and its current ``task``, which has to be finished by ``end_by``.
+
+    The constructor starts the process, and sends it the function and the first task.
 
     ``packed_maker``: the message with the function that makes the task function.
     ``number``: identifies the process in ``messages``.

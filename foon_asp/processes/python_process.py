@@ -76,8 +76,8 @@ class PythonProcess:
     def end(self) -> int:
         """Kill the process and the processes that it has started, and close the pipes; return its exit code.
 
-        The code is minus the number of the signal if a signal killed the process. Its threads get five
-        seconds to end.
+        The code is minus the number of the signal if a signal killed the process. Each of its threads gets
+        five seconds to end. Ctrl-C is deferred while the process ends. A second call returns the same code.
         """
         with uninterrupted():
             if hasattr(os, "killpg") and not self._group_ended:

@@ -104,7 +104,10 @@ class Worker(PythonProcess):
             deadline.check()
 
     def end(self) -> int:
-        """Kill the process and the processes that it has started; return its exit code."""
+        """Kill the process and the processes that it has started; return its exit code.
+
+        The worker is never ready again.
+        """
         self._busy = True
         return super().end()
 
@@ -127,7 +130,7 @@ _idle: dict[Hashable, Any] = {}
 def take_worker(key: Hashable, start: Callable[[], W]) -> W:
     """Return the idle worker of a key, which is then no longer idle.
 
-    If there is none, or if it has died, return a new one, which ``start`` starts.
+    If the key has no idle worker, or if its worker has died, return a new one, which ``start`` starts.
     """
     worker: W | None = _idle.pop(key, None)
     if worker is not None and worker.is_ready:

@@ -7,10 +7,10 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 
 
 class Connection(H11Protocol):  # type: ignore[misc]
-    """A connection that closes when no complete request arrives in time, and when too many connections wait.
+    """A connection that closes if no complete request arrives in time.
 
-    So the owner is not locked out by a program that opens connections and sends nothing, or half of a
-    request.
+    If more than ``max_waiting`` connections wait, the one that waits longest is closed. So the owner is not
+    locked out by a program that opens connections and sends nothing, or half of a request.
 
     ``request_seconds``: the time limit for a request to arrive completely; with fewer, slow browsers are
     refused.

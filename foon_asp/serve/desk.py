@@ -31,8 +31,8 @@ Rules = tuple[Constraint, ...]
 class _EventReporter(Reporter):
     """A reporter that sends events to the browser.
 
-    It sends no progress after the first page, because the browser would take the progress of further answers,
-    such as alternatives, for that of the first.
+    It sends no progress after the first page. The browser would take the progress of further answers, such as
+    alternatives, for that of the first.
     """
 
     def __init__(self, send_event: SendEvent) -> None:
@@ -173,8 +173,8 @@ class Desk:
     def _problem_of(self, form: Form) -> Problem:
         """Return the problem of a form, with the changes that the form makes to the kitchen.
 
-        If items are used up, the stock of the desk counts, without the items that the form removes, and so do
-        its exceptions of what stays.
+        If items are used up, the stock of the desk counts, without the items that the form removes. The
+        exceptions of the desk, which say what stays, also count.
         """
         foon = self._foon.vary(adding=form.adding, without=form.without)
         stock = stays = None
@@ -189,7 +189,8 @@ class Desk:
     def answer_regret(self, form: RegretForm, token: Cancel, send_event: SendEvent) -> None:
         """Send the regret of a unit or kitchen item: how much worse the optimum is without it.
 
-        It is sent as an event of kind ``without``, once the question before it has ended.
+        The rules are those of the page of the form. The regret is sent as an event of kind ``without``, once
+        the question before it has ended.
 
         Errors are sent, and not raised:
         - if the page of the form is no longer kept,

@@ -99,7 +99,10 @@ def _guard(app: Asgi, token: str, host: str) -> Asgi:
     """
 
     async def answer_or_refuse(scope: Any, receive: Any, send: Any) -> None:
-        """Answer a request by ``app`` if it is authorized, else by a refusal."""
+        """Answer a request by ``app`` if it is authorized, else by a refusal, both with security headers.
+
+        Ignore what is not HTTP.
+        """
         if scope["type"] != "http":
             return
 
