@@ -109,7 +109,8 @@ def certify(
           numbers are too long to be written.
 
     Raises:
-        NotBestError: if the tree is not optimal, and no constraint is uncovered.
+        NotBestError: if the tree is not optimal, unless trees may have to keep to more than the covered rules
+            (:attr:`Coverage.partial`).
     """
     if covered.rules and problem.own_rates:
         return None
@@ -346,7 +347,10 @@ def _costs_json(problem: Problem, objectives: Sequence[Objective], units: Sequen
 
 
 def _seal_and_verify(certificate: Certificate, subject: Subject) -> Verified:
-    """Write the seal of a certificate into its content, and return the claim that the verifier accepts."""
+    """Write the seal of a certificate into its content, and return the claim that the verifier accepts.
+
+    Raises :class:`RefusedError` if the verifier refuses the certificate.
+    """
     content = certificate.content
     content["seal"] = seal(content)
     return verify_any(read_certificate(certificate.text()), subject)

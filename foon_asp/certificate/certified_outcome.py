@@ -29,8 +29,9 @@ def certify_outcome(
 
     The objectives that the certificate proves are marked as certified. If it proves the whole claim,
     ``certificate`` becomes the kind of proof of the answer, and a plan that was found at a limit becomes
-    optimal. If only a bound is proved, or if user rules are taken on trust, the answer is not marked. In all
-    cases, ``outcome.seconds`` gets the seconds of the search, under ``certificate``.
+    optimal. User rules are taken on trust only if that proves more than a bound on trees. If only a bound is
+    proved, or if user rules are taken on trust, the answer is not marked. In all cases, ``outcome.seconds``
+    gets the seconds of the search, under ``certificate``.
 
     ``subject`` is the whole network if the network of the answer is a part of it, as for
     :func:`~foon_asp.certificate.certify`. Raises :class:`BugError` if a tree that the solver called optimal

@@ -61,7 +61,10 @@ class Coverage(NamedTuple):
         return self.compile_rules(problem).removed
 
     def rules_beyond_removal(self) -> list[str]:
-        """Return the names of covered ready-made rules that may do more than remove units."""
+        """Return the names of covered rules that may do more than remove units.
+
+        All rules have to be ready-made: claims about user rules raise ``KeyError``.
+        """
         return [rule["rule"] for rule in self.rules if not LIBRARY[rule["rule"]].removes]
 
 

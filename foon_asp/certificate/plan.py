@@ -190,7 +190,10 @@ class _PlanQuestion:
         tree = first_tree(self._simplified, self._reached) or ()
         prover = self._prover([a for a, unit in enumerate(self._units) if unit in tree])
         proved = prover.prove_claim(claim, Measure([0] * len(nothing)), ())
-        return None if proved is None else _ProofWriter(self, None, (), (), proved[2]).proof(proved[0])
+        if proved is None:
+            return None
+        proof, _, columns = proved
+        return _ProofWriter(self, None, (), (), columns).proof(proof)
 
     def _prover(self, derivation: Sequence[int]) -> PlanProver:
         """Return a prover of the question, with the limits and the required sets of rules.
@@ -417,7 +420,10 @@ class _ProofWriter:
         self._levels = [(level, scale) for level, scale in zip(levels, scales, strict=True)]
 
     def proof(self, proof: CountProof) -> Any:
-        """Return the JSON of a proof, with its branches."""
+        """Return the JSON of a proof, with its branches.
+
+        The cuts, balances and rounded conditions that it uses are recorded in the question.
+        """
         if isinstance(proof, Split):
             item = self._columns.get(proof.column)
             branch = {"unit": self._question.unit(proof.column)} if item is None else {"item": item}

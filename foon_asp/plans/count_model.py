@@ -189,7 +189,10 @@ class CountModel:
         return self._assumed_cap if upper is None else upper
 
     def cap_counts(self, measure: Measure, max_cost: int) -> None:
-        """Bound the count of each action so that its executions alone cost at most ``max_cost``."""
+        """Bound the count of each action so that its executions alone cost at most ``max_cost``.
+
+        Then :meth:`tighten` the rows of indicators.
+        """
         for action, cost in enumerate(measure.costs):
             if cost:
                 self.program.cap(action, max(max_cost, 0) // cost)

@@ -111,7 +111,7 @@ class ToolNeed(NamedTuple):
     ``changed``: preconditions that are no outputs.
     ``made``: outputs that the unit makes.
     ``others``: inputs of the label that the container rule skips. If no input or output has the label, it has
-    one entry for the tool: an input that is in, on or at it, or ``None`` if there is none.
+    one entry for the tool: an input that is in, on or at it, or ``None`` without such an input.
     """
 
     kept: tuple[ObjectNode, ...]
@@ -215,7 +215,7 @@ class _Run:
     def _start_step(self, position: int) -> Iterator[str]:
         """Start a step, and yield in words each reason why it cannot start.
 
-        If there is none, its copies, agent and tools are taken from the kitchen. ``position`` is that of the
+        Iterating to the end takes its copies, agent and tools from the kitchen. ``position`` is that of the
         step in the schedule, from 0.
         """
         unit, step = self._plan[position], self._steps[position]

@@ -192,7 +192,8 @@ class UnitCosts:
         """Return the cost of a tree by each objective, as written in a certificate.
 
         ``units`` are the units of the tree, and ``total`` is its cost as an amount. By ``success``, the cost
-        is the product of the rates; a product of 0 is refused. Raises :class:`LimitError` if a cost is too
+        is the product of the rates; a product of 0 is refused. It is a fraction by ``success``, ``attempts``,
+        ``price``, ``dissimilarity`` and measures, and else whole. Raises :class:`LimitError` if a cost is too
         long to be written.
         """
         costs: list[int | Fraction] = []

@@ -157,7 +157,7 @@ class _OrderSearch:
                 self._most_read[node] = max(self._most_read[node], read)
 
     def find_order(self) -> tuple[int, ...] | None:
-        """Return the steps in an order that runs; ``None`` if there is none or the search is given up.
+        """Return the steps in an order that runs; ``None`` if no order runs or the search is given up.
 
         It also sets ``dead_end`` and ``looks_left``. The caller has made sure that no node is overdrawn. The
         copies of goals then suffice at the end.
