@@ -193,7 +193,10 @@ def _tree_text(outcome: Outcome, units: Sequence[int]) -> str:
 
 
 def _costs_text(problem: Problem, units: Sequence[int]) -> str:
-    """Return the costs of a tree in words, such as ``3 units, 7 inputs``, for a message."""
+    """Return the costs of a tree in words, such as ``3 units, 7 inputs``, for a message.
+
+    An unknown success rate is omitted, and one of too many digits is not printed.
+    """
     costs = problem.costs(units)
     cost_texts = [f"{costs.units} units", f"{costs.inputs} inputs", f"{costs.ingredients} ingredients"]
     cost_texts.append(f"{costs.kitchen} kitchen items")

@@ -216,7 +216,10 @@ class _PlanQuestion:
         return list(map(Fraction, self._problem.figures(objective, self._units)))
 
     def _claim(self, objective: Objective) -> Claim:
-        """Return the claim that no plan costs less than the plan in hand by an objective."""
+        """Return the claim that no plan costs less than the plan in hand by an objective.
+
+        If the objective multiplies rates, costs have a coordinate for each rate below 1.
+        """
         problem, unit_costs = self._problem, self._unit_costs(objective)
         if multiplies(objective):
             rates = sorted({rate for rate in unit_costs if rate != 1}) or [_HALF]

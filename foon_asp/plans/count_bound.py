@@ -172,7 +172,10 @@ class CountBound:
     def _cheapest_counts_up_to(
         self, measures: Sequence[Measure], rounds: int, assumed_cap: int
     ) -> Counts | None:
-        """Return counts of least cost like :meth:`cheapest_counts`, with no count above an assumed cap."""
+        """Return counts of least cost like :meth:`cheapest_counts`, with no count above an assumed cap.
+
+        After the last round, the counts may still violate a landmark. Return ``None`` if HiGHS finds none.
+        """
         counts: Counts | None = None
         for _ in range(rounds):
             model = self._new_model(measures, assumed_cap)

@@ -139,7 +139,10 @@ class CountModel:
         return row, least - self._flows.start.get(o, 0)
 
     def _add_classes(self, measure: Measure) -> None:
-        """Add a column for each class of actions of a measure, equal to the sum of their counts."""
+        """Add a column for each class of actions of a measure, equal to the sum of their counts.
+
+        Actions of class -1 have no column. :meth:`class_columns` returns the columns later.
+        """
         columns = []
         for number in sorted(set(measure.classes) - {-1}):
             members = [a for a, class_number in enumerate(measure.classes) if class_number == number]

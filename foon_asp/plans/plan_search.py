@@ -53,7 +53,10 @@ def solve_question(question: PlanQuestion) -> Outcome:
 
 
 def _solve(question: PlanQuestion) -> Outcome:
-    """Apply the rules, restrict the network to units that can matter, and search; return the outcome."""
+    """Apply the rules, restrict the network to units that can matter, and search; return the outcome.
+
+    If the rules allow no plan, or a goal cannot be reached even if items last, nothing is searched.
+    """
     start_time = time.perf_counter()
     if not question.apply_rules():
         return question.outcome(Status.INFEASIBLE, Proof.SOLVER)

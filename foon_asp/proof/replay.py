@@ -173,7 +173,10 @@ class _Kitchen:
         return Replay(tuple(steps), shortage, remaining, self._stock_needed)
 
     def _run_step(self, position: int, unit: FunctionalUnit) -> Step:
-        """Execute a unit whose preconditions are available, oldest copies first, and return its step."""
+        """Execute a unit whose preconditions are available, oldest copies first, and return its step.
+
+        Its outputs become copies made by the step at ``position``.
+        """
         preconditions, consumes, adds = self._executions.of(unit)
         gone, stayed, came = list[Copy](), list[Copy](), list[Copy]()
         for node, amount in preconditions.items():

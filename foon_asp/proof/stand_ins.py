@@ -141,7 +141,10 @@ def stand_in_fault(
 
 
 def _singular_word(label: str) -> str:
-    """Return a label in lower case, in the singular, without spaces, hyphens and underscores."""
+    """Return a label in lower case, in the singular, without spaces, hyphens and underscores.
+
+    A word of up to 3 letters, or with the end ``ss``, counts as singular.
+    """
     word = "".join(letter for letter in label.casefold() if letter not in " -_")
     if len(word) > 5 and word[-3:] in {"ies", "oes"}:
         return word[:-3] + {"i": "y", "o": "o"}[word[-3]]
@@ -171,7 +174,11 @@ class _Servers:
         self._prices_of: dict[int, dict[int, Fraction]] = {}
 
     def prices_of(self, served: int) -> dict[int, Fraction]:
-        """Return the price of each node that may serve in place of the node ``served``, by id; cached."""
+        """Return the price of each node that may serve in place of the node ``served``, by id; cached.
+
+        ``served`` itself is omitted. With ``nearest``, nodes that cost more than the cheapest free one are
+        omitted as well.
+        """
         if served not in self._prices_of:
             objects = self._network.objects
             node = objects[served]
@@ -190,7 +197,7 @@ class _Servers:
         """Yield the nodes, by id, that may have a price in place of ``node``; a node may be yielded twice.
 
         Their label is spelled like that of ``node``, or the table lists the pair of labels or of nodes.
-        ``node`` itself is yielded, too.
+        ``node`` itself is yielded as well.
         """
         yield from self._spelled[_singular_word(node.label)]
         for serving, served in self._table.pairs:

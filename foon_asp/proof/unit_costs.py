@@ -146,7 +146,10 @@ class UnitCosts:
         return present
 
     def cost(self, member: int) -> Amount:
-        """Return the cost of a unit or item as an amount, with a part for each objective that counts it."""
+        """Return the cost of a unit or item as an amount, with a part for each objective that counts it.
+
+        By ``success``, the part is 1, under the rate of the unit.
+        """
         cost: Amount = {}
         for level, objective in enumerate(self.objectives):
             value = self._cost_by_objective(level, member)

@@ -235,7 +235,7 @@ class _OrderSearch:
         self._next[self._previous[step]] = self._previous[self._next[step]] = step
 
     def _execute(self, step: int, sign: int) -> None:
-        """Execute a waiting step on the numbers of copies, or undo it with a ``sign`` of -1."""
+        """Execute a waiting step on all counts of copies and waiting steps; undo it with a ``sign`` of -1."""
         self._done ^= 1 << step
         _, consumes, adds = self._steps[step]
         for node, _ in _copies_read(self._steps[step]):
