@@ -154,8 +154,8 @@ def certify_infeasible(
     """Return a certificate that there is no tree.
 
     Return ``None`` if some tree satisfies all covered constraints, or if no proof is found before time is up.
-    Also return ``None`` if constraints are covered and units have rates of their own. ``covered``,
-    ``expired`` and ``subject`` are as for :func:`certify`.
+    Also return ``None`` if the proof is beyond the limits of ``verify``, or if constraints are covered and
+    units have rates of their own. ``covered``, ``expired`` and ``subject`` are as for :func:`certify`.
     """
     if covered.rules and problem.own_rates:
         return None
@@ -222,7 +222,10 @@ def _write_tree_certificate(
         return len(covered.rules) + own_numbers.setdefault(index, len(own_numbers))
 
     def packing_json(packing: Packing) -> dict[str, object]:
-        """Return the JSON of a cost partition: weights of cuts, weights of limits, and the divisor."""
+        """Return the JSON of a cost partition: weights of cuts, weights of limits, and the divisor.
+
+        Limits and divisor are omitted where the partition does not use them. Cuts and limits get numbers.
+        """
         weights = sorted((cut_number(cut), arrays.vector_json(weight)) for cut, weight in packing.weights)
         limits = sorted(
             (limit_number(position), arrays.vector_json(weight)) for position, weight in packing.limits

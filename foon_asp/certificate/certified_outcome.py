@@ -83,8 +83,8 @@ def _find_certificate(
 ) -> Certificate | None:
     """Return a certificate about the trees or plans under the covered rules; ``None`` if none is found.
 
-    Trees of answers that are neither optimal nor infeasible get none. Raises :class:`BugError` if a tree is
-    better than the optimal one of the answer.
+    An answer about trees that is neither optimal nor infeasible gets none. Raises :class:`BugError` if a tree
+    is better than the optimal one of the answer.
     """
     if outcome.problem.items is not None:
         return _find_plan_certificate(outcome, covered, expired)

@@ -97,7 +97,8 @@ def certify_no_plan(
 ) -> Certificate | None:
     """Return a certificate that there is no plan; ``None`` if that is not proved before time is up.
 
-    Also return ``None`` if rules are covered and units have rates that differ from those of their motions.
+    Also return ``None`` if the certificate is beyond the limits of the verifier, or if rules are covered and
+    units have rates that differ from those of their motions.
     """
     if covered.rules and problem.own_rates:
         return None
@@ -146,11 +147,12 @@ class _PlanQuestion:
     def prove(
         self, objective: Objective, earlier_objectives: Sequence[Objective]
     ) -> tuple[Any, Vector | None] | None:
-        """Return the JSON of a proof that no plan costs less than the plan in hand by an objective.
+        """Prove that no plan costs less than the plan in hand by an objective, or prove a bound.
 
-        Only plans that are as good by ``earlier_objectives`` count. The second value is ``None`` for such a
-        proof. For the first objective, a smaller bound may be proved instead; the second value is then this
-        bound. If the plan in hand costs nothing, the proof is empty. Return ``None`` if nothing is proved.
+        Only plans that are as good by ``earlier_objectives`` count. Return the JSON of the proof, and its
+        bound if this is below the cost of the plan in hand, else ``None``. Such a bound is only proved for
+        the first objective. If the plan in hand costs nothing, the proof is empty. Return ``None`` if nothing
+        is proved.
         """
         earlier_levels = [self._level(earlier_objective) for earlier_objective in earlier_objectives]
         if any(level is None for level in earlier_levels):

@@ -48,8 +48,8 @@ class CountBound:
     ``limits``: limits on weighted sums, with weights from 0.
     ``derivation``: actions that reach the targets in the delete relaxation; landmarks are grown around them.
     ``levels``: plans that are worse than the incumbent by any level are excluded.
-    ``excluded_counts``: a plan is excluded if it executes all actions at least as often as one of these
-    counts says.
+    ``excluded_counts``: a plan is excluded if it executes all actions at least as often as one entry
+    says.
     ``expired``: returns whether time is up; the methods then raise :class:`Stopped`.
 
     ``proved`` is a lower bound on the cost of every plan by the first level; the methods raise it.
@@ -360,7 +360,10 @@ class CountBound:
     def _solve_equation_node(
         self, equation: StateEquation, costs: Mapping[int, int], max_cost: int
     ) -> Solved:
-        """Add rounded rows and violated conditions to the state equation; return its last solution."""
+        """Add rounded rows and violated conditions to the state equation; return its last solution.
+
+        This ends when nothing is violated, no solution is found, or the bound exceeds ``max_cost``.
+        """
         while True:
             self._stop_if_expired()
             solved = equation.strengthen(costs, max_cost)

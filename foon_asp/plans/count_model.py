@@ -33,8 +33,8 @@ class CountModel:
         measures: The measures of objectives.
         landmarks: The landmarks known so far.
         limits: Limits on weighted sums.
-        excluded_counts: A plan is excluded if it executes all actions at least as often as one of these
-            counts says.
+        excluded_counts: A plan is excluded if it executes all actions at least as often as one entry
+            says.
         assumed_cap: An upper bound that is assumed for counts that have none. If ``None``, nothing is
             assumed, and each class of a measure with exact costs has a column.
         expired: Returns whether time is up.
@@ -160,7 +160,7 @@ class CountModel:
         return self._classes[id(measure)]
 
     def add_landmark(self, landmark: Landmark) -> None:
-        """Add the row of a landmark; add nothing if an initial copy may satisfy it that has no column."""
+        """Add the row of a landmark; add nothing if an initial copy without a column may satisfy it."""
         members, stock, action, _ = landmark
         if not self.stock.keys() >= set(stock):
             return

@@ -189,7 +189,10 @@ class PlanProver(CountBound):
         return bound if parts is None else tuple(Fraction(math.ceil(b * parts), parts) for b in bound)
 
     def _is_enough(self, bound: Vector) -> bool:
-        """Return whether a bound, rounded up, proves the claim; that there is no plan, if it is above 0."""
+        """Return whether a bound, rounded up, proves the claim, as far as it was lowered.
+
+        The claim that there is no plan is proved by a bound above 0.
+        """
         order = self._claim.order
         if self._least is None:
             return order.sign(bound) > 0

@@ -82,7 +82,8 @@ class PlanQuestion:
     def apply_rules(self) -> bool:
         """Apply rules that remove units, require sets or limit sums; return whether they allow a plan.
 
-        Other rules are left to the search. Their analysis assumes that each unit is executed once.
+        The rules become ``limits`` and ``restriction``. Other rules are left to the search. Their analysis
+        assumes that each unit is executed once.
         """
         rules = self.program.understood
         if rules is None:

@@ -15,7 +15,7 @@ ToolName = str | ObjectNode
 
 
 class Tool(NamedTuple):
-    """One tool or vessel: the ``number``-th, from 1, of those that are counted under ``name``.
+    """One tool or vessel: the ``number``-th, from 1, that is counted under ``name``.
 
     ``name`` is a label, or an object node for a tool that the kitchen has with contents.
     """
@@ -123,7 +123,7 @@ class ToolNeed(NamedTuple):
     def number(self) -> int:
         """The number of tools of the label that the unit occupies.
 
-        A tool that changes can be one that is made, so the larger of these numbers counts.
+        A tool that changes can be one that is made, so the larger number counts.
         """
         return len(self.kept) + max(len(self.changed) + len(self.others), len(self.made))
 
@@ -249,7 +249,7 @@ class _Run:
             self._copies_read[node] -= amount - consumes.get(node, 0)
         self._copies.update(made)
         for tool in step.tools:
-            # some of these nodes are at other tools: nothing looks for them here
+            # some nodes are at other tools: nothing looks for them here
             self._states[tool] = self._states.get(tool, frozenset()).difference(consumes).union(made)
         for resource in _resources_of(step):
             self._step_using.pop(resource, None)

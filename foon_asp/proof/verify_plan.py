@@ -447,7 +447,7 @@ class PlanCheck(Check):
     def _max_count_by_cost(self, unit: int, level: int, less: bool) -> int | None:
         """Return an upper bound on the count of a unit in plans of at most the claimed cost by an objective.
 
-        With ``less``, the bound is for plans of less than the claimed cost; by ``success``, it is as without.
+        With ``less``, the bound is for plans of less than the claimed cost; ``success`` ignores ``less``.
         Return ``None`` if an execution costs nothing.
         """
         per_execution, max_cost = self.cost_lower_bound(unit, level), self.claimed_cost(level)
