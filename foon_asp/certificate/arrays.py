@@ -107,7 +107,8 @@ class Arrays:
     def exceeded_limit(self, derivation: frozenset[int]) -> Limit | None:
         """Search for a limit by user rules that a derivation, a set of actions, exceeds.
 
-        Return it after adding it to the limits; return ``None`` if there is none.
+        Return it after adding it to the limits. Return ``None`` if no limit is exceeded, or if no such limits
+        are searched for.
         """
         limit = self._own_limits and self._own_limits.exceeded_limit(self._units_among(derivation))
         if limit:

@@ -109,7 +109,8 @@ def certify(
           numbers are too long to be written.
 
     Raises:
-        NotBestError: if the tree is not optimal, and no constraint is uncovered.
+        NotBestError: if the tree is not optimal, unless trees may have to keep to more than the covered rules
+            (:attr:`Coverage.partial`).
     """
     if covered.rules and problem.own_rates:
         return None
@@ -153,8 +154,8 @@ def certify_infeasible(
     """Return a certificate that there is no tree.
 
     Return ``None`` if some tree satisfies all covered constraints, or if no proof is found before time is up.
-    Also return ``None`` if constraints are covered and units have rates of their own. ``covered``,
-    ``expired`` and ``subject`` are as for :func:`certify`.
+    Also return ``None`` if the proof is beyond the limits of ``verify``, or if constraints are covered and
+    units have rates of their own. ``covered``, ``expired`` and ``subject`` are as for :func:`certify`.
     """
     if covered.rules and problem.own_rates:
         return None
@@ -221,7 +222,10 @@ def _write_tree_certificate(
         return len(covered.rules) + own_numbers.setdefault(index, len(own_numbers))
 
     def packing_json(packing: Packing) -> dict[str, object]:
-        """Return the JSON of a cost partition: weights of cuts, weights of limits, and the divisor."""
+        """Return the JSON of a cost partition: weights of cuts, weights of limits, and the divisor.
+
+        Limits and divisor are omitted where the partition does not use them. Cuts and limits get numbers.
+        """
         weights = sorted((cut_number(cut), arrays.vector_json(weight)) for cut, weight in packing.weights)
         limits = sorted(
             (limit_number(position), arrays.vector_json(weight)) for position, weight in packing.limits
@@ -346,7 +350,10 @@ def _costs_json(problem: Problem, objectives: Sequence[Objective], units: Sequen
 
 
 def _seal_and_verify(certificate: Certificate, subject: Subject) -> Verified:
-    """Write the seal of a certificate into its content, and return the claim that the verifier accepts."""
+    """Write the seal of a certificate into its content, and return the claim that the verifier accepts.
+
+    Raises :class:`RefusedError` if the verifier refuses the certificate.
+    """
     content = certificate.content
     content["seal"] = seal(content)
     return verify_any(read_certificate(certificate.text()), subject)

@@ -29,8 +29,9 @@ def certify_outcome(
 
     The objectives that the certificate proves are marked as certified. If it proves the whole claim,
     ``certificate`` becomes the kind of proof of the answer, and a plan that was found at a limit becomes
-    optimal. If only a bound is proved, or if user rules are taken on trust, the answer is not marked. In all
-    cases, ``outcome.seconds`` gets the seconds of the search, under ``certificate``.
+    optimal. User rules are taken on trust only if that proves more than a bound on trees. If only a bound is
+    proved, or if user rules are taken on trust, the answer is not marked. In all cases, ``outcome.seconds``
+    gets the seconds of the search, under ``certificate``.
 
     ``subject`` is the whole network if the network of the answer is a part of it, as for
     :func:`~foon_asp.certificate.certify`. Raises :class:`BugError` if a tree that the solver called optimal
@@ -82,8 +83,8 @@ def _find_certificate(
 ) -> Certificate | None:
     """Return a certificate about the trees or plans under the covered rules; ``None`` if none is found.
 
-    Trees of answers that are neither optimal nor infeasible get none. Raises :class:`BugError` if a tree is
-    better than the optimal one of the answer.
+    An answer about trees that is neither optimal nor infeasible gets none. Raises :class:`BugError` if a tree
+    is better than the optimal one of the answer.
     """
     if outcome.problem.items is not None:
         return _find_plan_certificate(outcome, covered, expired)
@@ -192,7 +193,10 @@ def _tree_text(outcome: Outcome, units: Sequence[int]) -> str:
 
 
 def _costs_text(problem: Problem, units: Sequence[int]) -> str:
-    """Return the costs of a tree in words, such as ``3 units, 7 inputs``, for a message."""
+    """Return the costs of a tree in words, such as ``3 units, 7 inputs``, for a message.
+
+    An unknown success rate is omitted, and one of too many digits is not printed.
+    """
     costs = problem.costs(units)
     cost_texts = [f"{costs.units} units", f"{costs.inputs} inputs", f"{costs.ingredients} ingredients"]
     cost_texts.append(f"{costs.kitchen} kitchen items")

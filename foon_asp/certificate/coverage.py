@@ -61,7 +61,10 @@ class Coverage(NamedTuple):
         return self.compile_rules(problem).removed
 
     def rules_beyond_removal(self) -> list[str]:
-        """Return the names of covered ready-made rules that may do more than remove units."""
+        """Return the names of covered rules that may do more than remove units.
+
+        All rules have to be ready-made: claims about user rules raise ``KeyError``.
+        """
         return [rule["rule"] for rule in self.rules if not LIBRARY[rule["rule"]].removes]
 
 
@@ -158,7 +161,7 @@ def _facts_of_rules(constraint: Constraint, among_others: bool = False) -> dict[
 
 
 def _name_with_digest(constraint: Constraint) -> str:
-    """Return the name of rules and their digest, and their text if they were given as text, as one text."""
+    """Return the name and the digest of rules as one text; rules that were given as text are added to it."""
     if isinstance(constraint, RuleText):
         return (
             f"{constraint.name} {_sha256(constraint.text.encode('utf-8', 'surrogatepass'))} {constraint.text}"

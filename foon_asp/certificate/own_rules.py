@@ -34,8 +34,8 @@ def with_own_rules(covered: Coverage, problem: Problem, settings: Settings) -> C
     """Return the coverage with user rules as claims about removed and required units.
 
     Claims that follow from covered rules are left out, since they need no trust. Limits by antimonotone rules
-    are found later, during the proof. The result covers all constraints. Return ``None`` if the meaning of
-    the user rules is not known.
+    are found later, during the proof. If the rules exclude every tree, the only claim is that there is no
+    tree. The result covers all constraints. Return ``None`` if the meaning of the user rules is not known.
     """
     rules = assemble(settings, lambda _: None).understood
     if rules is None:

@@ -97,7 +97,8 @@ def certify_no_plan(
 ) -> Certificate | None:
     """Return a certificate that there is no plan; ``None`` if that is not proved before time is up.
 
-    Also return ``None`` if rules are covered and units have rates that differ from those of their motions.
+    Also return ``None`` if the certificate is beyond the limits of the verifier, or if rules are covered and
+    units have rates that differ from those of their motions.
     """
     if covered.rules and problem.own_rates:
         return None
@@ -146,11 +147,12 @@ class _PlanQuestion:
     def prove(
         self, objective: Objective, earlier_objectives: Sequence[Objective]
     ) -> tuple[Any, Vector | None] | None:
-        """Return the JSON of a proof that no plan costs less than the plan in hand by an objective.
+        """Prove that no plan costs less than the plan in hand by an objective, or prove a bound.
 
-        Only plans that are as good by ``earlier_objectives`` count. The second value is ``None`` for such a
-        proof. For the first objective, a smaller bound may be proved instead; the second value is then this
-        bound. If the plan in hand costs nothing, the proof is empty. Return ``None`` if nothing is proved.
+        Only plans that are as good by ``earlier_objectives`` count. Return the JSON of the proof, and its
+        bound if this is below the cost of the plan in hand, else ``None``. Such a bound is only proved for
+        the first objective. If the plan in hand costs nothing, the proof is empty. Return ``None`` if nothing
+        is proved.
         """
         earlier_levels = [self._level(earlier_objective) for earlier_objective in earlier_objectives]
         if any(level is None for level in earlier_levels):
@@ -190,7 +192,10 @@ class _PlanQuestion:
         tree = first_tree(self._simplified, self._reached) or ()
         prover = self._prover([a for a, unit in enumerate(self._units) if unit in tree])
         proved = prover.prove_claim(claim, Measure([0] * len(nothing)), ())
-        return None if proved is None else _ProofWriter(self, None, (), (), proved[2]).proof(proved[0])
+        if proved is None:
+            return None
+        proof, _, columns = proved
+        return _ProofWriter(self, None, (), (), columns).proof(proof)
 
     def _prover(self, derivation: Sequence[int]) -> PlanProver:
         """Return a prover of the question, with the limits and the required sets of rules.
@@ -213,7 +218,10 @@ class _PlanQuestion:
         return list(map(Fraction, self._problem.figures(objective, self._units)))
 
     def _claim(self, objective: Objective) -> Claim:
-        """Return the claim that no plan costs less than the plan in hand by an objective."""
+        """Return the claim that no plan costs less than the plan in hand by an objective.
+
+        If the objective multiplies rates, costs have a coordinate for each rate below 1.
+        """
         problem, unit_costs = self._problem, self._unit_costs(objective)
         if multiplies(objective):
             rates = sorted({rate for rate in unit_costs if rate != 1}) or [_HALF]
@@ -417,7 +425,10 @@ class _ProofWriter:
         self._levels = [(level, scale) for level, scale in zip(levels, scales, strict=True)]
 
     def proof(self, proof: CountProof) -> Any:
-        """Return the JSON of a proof, with its branches."""
+        """Return the JSON of a proof, with its branches.
+
+        The cuts, balances and rounded conditions that it uses are recorded in the question.
+        """
         if isinstance(proof, Split):
             item = self._columns.get(proof.column)
             branch = {"unit": self._question.unit(proof.column)} if item is None else {"item": item}

@@ -12,7 +12,11 @@ _NOT_READ = frozenset({"available", "executes", "taken", "makes"})
 
 
 def require_built_for_plans(settings: Settings) -> None:
-    """Raise :class:`UserError`, naming the feature, if settings ask for what plans do not support."""
+    """Raise :class:`UserError`, naming the feature, if settings ask for what plans do not support.
+
+    They do not support other encodings, soft constraints, bounds by rules, and the ready-made constraints
+    ``before`` and ``require_intermediate``.
+    """
     for constraint in settings.constraints:
         name = Path(constraint.name.partition(":")[0]).stem
         if name in _NOT_BUILT:
@@ -27,7 +31,10 @@ def require_built_for_plans(settings: Settings) -> None:
 
 
 def require_rules_of_plans(program: Program) -> None:
-    """Raise :class:`UserError` if user rules read more of a plan than how often it executes each unit."""
+    """Raise :class:`UserError` if user rules read more of a plan than how often it executes each unit.
+
+    Refused are rules over predicates about order, such as ``available``, and rules that are not local.
+    """
     for name, arity in sorted(program.looked_at):
         if name.lstrip("_") in _NOT_READ:
             raise UserError(f"rules over {name}/{arity} are not built for items that are used up")

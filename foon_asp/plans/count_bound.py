@@ -48,8 +48,8 @@ class CountBound:
     ``limits``: limits on weighted sums, with weights from 0.
     ``derivation``: actions that reach the targets in the delete relaxation; landmarks are grown around them.
     ``levels``: plans that are worse than the incumbent by any level are excluded.
-    ``excluded_counts``: a plan is excluded if it executes all actions at least as often as one of these
-    counts says.
+    ``excluded_counts``: a plan is excluded if it executes all actions at least as often as one entry
+    says.
     ``expired``: returns whether time is up; the methods then raise :class:`Stopped`.
 
     ``proved`` is a lower bound on the cost of every plan by the first level; the methods raise it.
@@ -82,7 +82,8 @@ class CountBound:
 
         The counts are of a plan of the delete relaxation, as those of :meth:`cheapest_counts`. They are found
         by the state equation, where few actions have indicators, which is much faster. Return ``None`` if no
-        counts are found. If items have costs or counts are excluded, return ``None`` without a search.
+        counts are found. If items have costs or counts are excluded, return ``None`` without a search. The
+        rounded rows found for the first measure replace those known so far.
         """
         if self._excluded_counts or any(measure.item for measure in measures):
             return None
@@ -154,7 +155,8 @@ class CountBound:
 
         Return ``None`` if HiGHS finds none. The counts are of a plan of the delete relaxation. There may be
         no plan with these counts, and their optimality is not proved. Counts are searched up to ``rounds``
-        times, each time with a further landmark that the last counts violate.
+        times, each time with a further landmark that the last counts violate. Each count is at most
+        ``first_executions`` for each copy wanted. If a count is that large, ``last_executions`` is tried.
         """
         counts = None
         most_copies_wanted = max(self._flows.targets.values(), default=1)
@@ -170,7 +172,10 @@ class CountBound:
     def _cheapest_counts_up_to(
         self, measures: Sequence[Measure], rounds: int, assumed_cap: int
     ) -> Counts | None:
-        """Return counts of least cost like :meth:`cheapest_counts`, with no count above an assumed cap."""
+        """Return counts of least cost like :meth:`cheapest_counts`, with no count above an assumed cap.
+
+        After the last round, the counts may still violate a landmark. Return ``None`` if HiGHS finds none.
+        """
         counts: Counts | None = None
         for _ in range(rounds):
             model = self._new_model(measures, assumed_cap)
@@ -329,7 +334,7 @@ class CountBound:
 
         Only plans as good as the incumbent by the levels in ``earlier_levels`` are considered. The search
         branches over counts, adds violated conditions, and gives up after ``equation_nodes`` nodes. Without
-        ``earlier_levels``, the first node raises ``proved``.
+        ``earlier_levels``, the first node raises ``proved``, and its rounded rows replace those known so far.
         """
         costs = {a: cost for a, cost in enumerate(measure.costs) if cost}
         caps = [max(max_cost, 0) // cost if cost else None for cost in measure.costs]
@@ -355,7 +360,10 @@ class CountBound:
     def _solve_equation_node(
         self, equation: StateEquation, costs: Mapping[int, int], max_cost: int
     ) -> Solved:
-        """Add rounded rows and violated conditions to the state equation; return its last solution."""
+        """Add rounded rows and violated conditions to the state equation; return its last solution.
+
+        This ends when nothing is violated, no solution is found, or the bound exceeds ``max_cost``.
+        """
         while True:
             self._stop_if_expired()
             solved = equation.strengthen(costs, max_cost)
@@ -488,7 +496,7 @@ class CountBound:
     def _violated_landmark(
         self, used: set[int], initial: set[int], stock: Mapping[int, int]
     ) -> Landmark | None:
-        """Return a landmark that the executed actions ``used`` violate; ``None`` if there is none.
+        """Return a landmark that the executed actions ``used`` violate; ``None`` if they violate no landmark.
 
         The executed actions are applied to the initial objects in the delete relaxation. If a target or an
         executed action is not reached, the landmark has actions that would lead to it, none of them executed.
@@ -539,7 +547,7 @@ class CountBound:
 
         Landmarks avoid actions whose indicators have large values in the solution. At the root, further ones
         are tried: for each action of the derivation, a landmark with none of its other actions. Without a
-        derivation, no landmarks are sought.
+        derivation, or if no actions reach the targets, no landmarks are sought.
         """
         derivation, action_count = self.derivation, self._action_count
         if not derivation:

@@ -33,8 +33,8 @@ class CountModel:
         measures: The measures of objectives.
         landmarks: The landmarks known so far.
         limits: Limits on weighted sums.
-        excluded_counts: A plan is excluded if it executes all actions at least as often as one of these
-            counts says.
+        excluded_counts: A plan is excluded if it executes all actions at least as often as one entry
+            says.
         assumed_cap: An upper bound that is assumed for counts that have none. If ``None``, nothing is
             assumed, and each class of a measure with exact costs has a column.
         expired: Returns whether time is up.
@@ -139,7 +139,10 @@ class CountModel:
         return row, least - self._flows.start.get(o, 0)
 
     def _add_classes(self, measure: Measure) -> None:
-        """Add a column for each class of actions of a measure, equal to the sum of their counts."""
+        """Add a column for each class of actions of a measure, equal to the sum of their counts.
+
+        Actions of class -1 have no column. :meth:`class_columns` returns the columns later.
+        """
         columns = []
         for number in sorted(set(measure.classes) - {-1}):
             members = [a for a, class_number in enumerate(measure.classes) if class_number == number]
@@ -157,7 +160,7 @@ class CountModel:
         return self._classes[id(measure)]
 
     def add_landmark(self, landmark: Landmark) -> None:
-        """Add the row of a landmark; add nothing if an initial copy may satisfy it that has no column."""
+        """Add the row of a landmark; add nothing if an initial copy without a column may satisfy it."""
         members, stock, action, _ = landmark
         if not self.stock.keys() >= set(stock):
             return
@@ -189,7 +192,10 @@ class CountModel:
         return self._assumed_cap if upper is None else upper
 
     def cap_counts(self, measure: Measure, max_cost: int) -> None:
-        """Bound the count of each action so that its executions alone cost at most ``max_cost``."""
+        """Bound the count of each action so that its executions alone cost at most ``max_cost``.
+
+        Then :meth:`tighten` the rows of indicators.
+        """
         for action, cost in enumerate(measure.costs):
             if cost:
                 self.program.cap(action, max(max_cost, 0) // cost)

@@ -74,8 +74,8 @@ class PlanProver(CountBound):
         The bound is ``None`` if the claim is that there is no plan. The last value has the object of each
         column for endless items or initial copies, if these have costs. Return ``None`` if nothing is proved.
 
-        ``measure`` is the objective of the claim. Plans that are worse than the incumbent by a level in
-        ``kept_levels`` are excluded from the claim.
+        The rounded rows known so far are replaced. ``measure`` is the objective of the claim. Plans that are
+        worse than the incumbent by a level in ``kept_levels`` are excluded from the claim.
         """
         self._claim, self._least, self._leaves = claim, claim.least, 0
         floats = [claim.order.approximate(cost)[0] for cost in claim.costs]
@@ -189,7 +189,10 @@ class PlanProver(CountBound):
         return bound if parts is None else tuple(Fraction(math.ceil(b * parts), parts) for b in bound)
 
     def _is_enough(self, bound: Vector) -> bool:
-        """Return whether a bound, rounded up, proves the claim; that there is no plan, if it is above 0."""
+        """Return whether a bound, rounded up, proves the claim, as far as it was lowered.
+
+        The claim that there is no plan is proved by a bound above 0.
+        """
         order = self._claim.order
         if self._least is None:
             return order.sign(bound) > 0

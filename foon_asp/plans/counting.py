@@ -37,7 +37,10 @@ class Counting:
     """
 
     def __init__(self, question: PlanQuestion, units: list[int]) -> None:
-        """Build the flows of units, given by id, and the bound on their counts under the question's rules."""
+        """Build the flows of units, given by id, and the bound on their counts under the question's rules.
+
+        Of the plans that the question excludes, those with other units are ignored.
+        """
         self._question, self._problem, self.units = question, question.problem, units
         self._measures: dict[Objective, Measure] = {}
         self._known_unit_costs: dict[Objective, list[Fraction]] = {}
@@ -69,7 +72,10 @@ class Counting:
         )
 
     def measure(self, objective: Objective) -> Measure:
-        """Return the measure of an objective over the units; cached."""
+        """Return the measure of an objective over the units; cached.
+
+        Raises :class:`UserError` if the objective multiplies rates and a rate is 0.
+        """
         if objective not in self._measures:
             self._measures[objective] = self._compute_measure(objective)
         return self._measures[objective]
@@ -268,7 +274,7 @@ class Counting:
         return plan is not None and self._question.try_incumbent(plan)
 
     def find_order(self, counts: Counts) -> Plan | None:
-        """Return a plan that executes each action as often as counted; ``None`` if there is none.
+        """Return a plan that executes each action as often as counted; ``None`` if no such plan exists.
 
         Such a plan keeps to the user's rules. clingo searches for it if amounts do not count, and either
         ``kitchen`` is an objective or the other search decides nothing. Raises :class:`Stopped` if nothing is
@@ -302,7 +308,7 @@ class Counting:
         return None
 
     def _bulk_plan(self, counts: Counts) -> Plan | None:
-        """Return a plan with these counts, built from runs of one action each; ``None`` if there is none.
+        """Return a plan with these counts, built from runs of one action each; ``None`` if none exists.
 
         It keeps to the user's rules. With the objective ``kitchen``, it takes as few initial copies as
         possible. Raises :class:`Stopped` if nothing is decided.
@@ -358,7 +364,7 @@ class Counting:
         return run.units is not None
 
     def _find_plan(self, times: Mapping[int, tuple[int, int]], best: bool = False) -> Plan | None:
-        """Return a plan with counts within ``times``, found by clingo; ``None`` if there is none.
+        """Return a plan with counts within ``times``, found by clingo; ``None`` if none exists.
 
         ``times`` has the least and greatest count of each action. With ``best``, the plan is the best one.
         Raises :class:`Stopped` if clingo does not decide it.

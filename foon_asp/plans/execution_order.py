@@ -40,7 +40,7 @@ def bulk_order(
 
 
 def least_copies(flows: Flows, counts: Counts) -> dict[int, int]:
-    """Return for each object in ``flows.start`` a lower bound on the initial copies that orders need."""
+    """Return how many initial copies of each object in ``flows.start`` every order needs at least."""
     change = Counter({o: -n for o, n in flows.targets.items()})
     required = Counter[int]()
     for action, times in counts.items():

@@ -71,7 +71,7 @@ class Flows:
         """The remainders of objects.
 
         An object has remainders if every action that asks for it leaves more copies than its target. It has
-        one for each of these actions; ``copies`` is the least number that one of them leaves.
+        one for each such action; ``copies`` is the least number that one of them leaves.
         """
         remaining_by_object: dict[int, dict[int, int]] = {}
         for action, preconditions in enumerate(self.asks):
@@ -132,7 +132,7 @@ class Flows:
 def flows_of(problem: Problem, units: Sequence[int]) -> Flows:
     """Return the preconditions, consumption and add effects of units; action ``i`` is ``units[i]``.
 
-    Object nodes that none of these units needs are omitted, except goals. Nodes that never run out are only
+    Object nodes that no unit among them needs are omitted, except goals. Nodes that never run out are only
     in ``items``.
     """
     needed = {o for unit in units for o in problem.flows[unit].asks}.union(problem.goals)

@@ -37,7 +37,7 @@ Plan = tuple[int, ...]
 class PlanQuestion:
     """A question about plans, with the incumbent and what is known of the search.
 
-    ``best``: the incumbent and its costs; ``None`` if there is none.
+    ``best``: the incumbent and its costs; ``None`` without an incumbent.
     ``bounds``: proved lower bounds by objective.
     ``limits``, ``restriction``: the rules that :meth:`apply_rules` understood.
     ``below``: pairs of an objective and a cost; a plan has to cost less than each.
@@ -82,7 +82,8 @@ class PlanQuestion:
     def apply_rules(self) -> bool:
         """Apply rules that remove units, require sets or limit sums; return whether they allow a plan.
 
-        Other rules are left to the search. Their analysis assumes that each unit is executed once.
+        The rules become ``limits`` and ``restriction``. Other rules are left to the search. Their analysis
+        assumes that each unit is executed once.
         """
         rules = self.program.understood
         if rules is None:
@@ -133,7 +134,7 @@ class PlanQuestion:
         """Return whether it is proved that rules allow no tree if items last, and so no plan.
 
         The solver for items that last searches for such a tree. Without rules, return ``False`` without a
-        search. Do so, too, if rules read numbers of executions for more than upper bounds on these numbers.
+        search. Also do so if rules read numbers of executions for more than upper bounds on these numbers.
         """
         rules, problem = self.program.understood, self.problem
         if rules is None or not rules.only_limits:
@@ -165,8 +166,9 @@ class PlanQuestion:
     def outcome(self, status: Status, proof: Proof | None) -> Outcome:
         """Replay the incumbent, and return the outcome with this status and kind of proof.
 
-        If the status is optimal, the costs of the incumbent become the bounds. ``proof`` is ``None`` if the
-        search was stopped; the outcome then says why. Raises :class:`BugError` if the replay fails.
+        If the status is optimal, the costs of the incumbent become the bounds. Without an incumbent, the
+        outcome has no bounds. ``proof`` is ``None`` if the search was stopped; the outcome then says why.
+        Raises :class:`BugError` if the replay fails.
         """
         plan, costs = self.best or (None, None)
         if plan is not None and costs is not None:

@@ -53,7 +53,10 @@ def solve_question(question: PlanQuestion) -> Outcome:
 
 
 def _solve(question: PlanQuestion) -> Outcome:
-    """Apply the rules, restrict the network to units that can matter, and search; return the outcome."""
+    """Apply the rules, restrict the network to units that can matter, and search; return the outcome.
+
+    If the rules allow no plan, or a goal cannot be reached even if items last, nothing is searched.
+    """
     start_time = time.perf_counter()
     if not question.apply_rules():
         return question.outcome(Status.INFEASIBLE, Proof.SOLVER)
@@ -67,8 +70,9 @@ def _search(question: PlanQuestion, units: list[int]) -> Outcome:
     """Search for the best plan of ``units``, and prove it; return the outcome.
 
     First, counts of least cost are searched for, and then an order of them, which becomes the first
-    incumbent. If no plan is found so, the search tries to prove that there is none. With an incumbent, counts
-    of lower cost are searched until the incumbent is proved the best. Raises :class:`Stopped` if time is up.
+    incumbent. If no plan is found so, the search tries to prove that no plan exists. With an incumbent,
+    counts of lower cost are searched until the incumbent is proved the best. Raises :class:`Stopped` if time
+    is up.
     """
     counting = Counting(question, units)
     if not units:  # every goal is available: only the empty plan is irredundant
@@ -120,7 +124,7 @@ def _plan_by_equation(question: PlanQuestion, counting: Counting, measures: Sequ
     """Return a plan with the cheapest counts of the state equation, if they have an order.
 
     Return ``None`` if there are no such counts, if no order of them is found that is allowed, or if the
-    search for an order runs out of time.
+    search for an order decides nothing.
     """
     counts = counting.bound.cheapest_counts_by_equation(measures)
     try:
@@ -133,7 +137,8 @@ def _plan_by_equation(question: PlanQuestion, counting: Counting, measures: Sequ
 def _without_expensive_units(question: PlanQuestion, counting: Counting, plan: Plan) -> Counting:
     """Return a :class:`Counting` without the units that alone cost more than a plan by the first objective.
 
-    If costs are counted exactly, or if no unit costs so much, return ``counting`` itself.
+    Its derivation is the plan. Return ``counting`` itself if costs are counted exactly, or if no unit or
+    every unit costs so much.
     """
     objective = question.levels[0]
     if multiplies(objective) or counting.measure(objective).exact is None:

@@ -36,7 +36,8 @@ class RankedPlans:
     def __iter__(self) -> Iterator[tuple[Plan, Costs]]:
         """Yield plans with their costs, each proved the best among the plans that contain no earlier one.
 
-        Only the search for the first plan is reported.
+        Only the search for the first plan is reported. An empty plan is the last one, since every other plan
+        contains it.
         """
         yielded: list[Mapping[int, int]] = []
         while True:
@@ -66,7 +67,8 @@ def best_plans(
 
     The list has at most ``max_plans`` plans with different counts of executions, each with its costs. Without
     a proof that a plan is the best, it has the best plan found, if any. If it is proved that there is no
-    plan, the last value is true.
+    plan, the last value is true. It is false if time is up before all plans are found. Ctrl-C ends the search
+    in the same way, and is recorded in the deadline.
     """
     question = PlanQuestion(problem, objectives, settings, reporter)
     outcome = solve_question(question)

@@ -241,8 +241,9 @@ class StateEquation(RoundedProgram):
         """Add rounded rows of a smaller program that merges objects of one role; return whether any is added.
 
         A row of this program is the sum of the balances of all objects of one role, such as planks of any
-        wood. Actions that are alike in all rows and in cost share a column. A row about a single object of
-        many alternatives is weak, since the solution can use another alternative.
+        wood. Actions that are alike in all rows and in cost share a column. If no actions share a column,
+        nothing is added. A row about a single object of many alternatives is weak, since the solution can use
+        another alternative.
         """
         roles = self._flows.roles
         sums: dict[object, tuple[list[Condition], dict[int, int], int]] = {}

@@ -249,8 +249,8 @@ class WholeProgram:
     def _run(self, objective: Mapping[int, int] | Mapping[int, float]) -> Any:
         """Solve the relaxation with HiGHS; return the HiGHS instance.
 
-        If a warm start gives neither an optimum nor a proof that there is none, solve it again from scratch.
-        Raises :class:`Stopped` if time is up.
+        If a warm start gives neither an optimum nor a proof that no solution exists, solve it again from
+        scratch. Raises :class:`Stopped` if time is up.
         """
         highs = self._update_highs(objective)
         self._run_to_the_end(highs)

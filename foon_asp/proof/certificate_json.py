@@ -25,8 +25,9 @@ def load_certificate(file: Path) -> Any:
 def read_certificate(text: str) -> Any:
     """Return the parsed JSON of a certificate.
 
-    Raises :class:`RefusedError` if the text is no JSON, has a key twice in one object, or has a float. Raises
-    :class:`LimitError` if it has more letters or brackets than :class:`CertificateLimits` allows.
+    Raises :class:`RefusedError` if the text is no JSON or is nested too deeply. A key that occurs twice in
+    one object and a number that is not whole are refused as well. Raises :class:`LimitError` if it has
+    more letters or brackets than :class:`CertificateLimits` allows.
     """
 
     def unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

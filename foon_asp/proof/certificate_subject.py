@@ -20,7 +20,7 @@ class Subject(NamedTuple):
     ``utensils``: the labels of utensils.
     ``prices``: the prices of motions and units; ``None`` if unknown.
     ``stated``: digests by name that are used as they are, in place of computed ones.
-    ``trusted``: the names of those stated digests that nobody computed from the data.
+    ``trusted``: the names of stated digests that nobody computed from the data.
     ``amounts``: the amounts of inputs and outputs, which only plans read.
     ``stand_ins``: the table by which stand-ins were added to the network; ``None`` without stand-ins.
     """

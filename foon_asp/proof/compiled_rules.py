@@ -26,10 +26,10 @@ class CompiledRules:
 
     New nodes are numbered after those of the network. A step makes one new node once all its preconditions
     are available, and costs nothing. A tree uses a step if one of its units needs the step's node, or if this
-    node is a goal. A tree satisfies the constraints if all of these hold:
+    node is a goal. A tree satisfies the constraints if all that follows holds:
 
-    ``removed``: it has none of these units.
-    ``goals``: it makes each of these new nodes.
+    ``removed``: it has no unit of this set.
+    ``goals``: it makes each new node of this list.
     ``limits``: it keeps to each limit, by number. The limit by ``max_sum`` of a meaning has the number of its
     constraint. The limits in ``limits`` of meanings are numbered after all constraints.
     ``never``: this set is empty. It has the numbers of constraints that no tree satisfies.

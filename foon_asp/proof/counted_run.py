@@ -14,7 +14,7 @@ class CountedRun(NamedTuple):
 
     ``lacking``: the node of which too few copies exist at some step or for a goal; ``None`` if the plan runs.
     ``stock``: for each node with a finite stock, the number of initial copies that the plan needs. If the
-    plan stopped, only the steps before the shortage count.
+    plan stopped, the numbers may be too small, since later steps do not count.
     """
 
     lacking: ObjectNode | None

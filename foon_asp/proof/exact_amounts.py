@@ -63,7 +63,10 @@ class AmountArithmetic:
             self.budget.spend_on_fractions(bit_length(total[key]))
 
     def common_denominators(self, amounts: Sequence[Amount]) -> dict[tuple[int, Fraction | None], int]:
-        """Return, for each part of amounts (objective and rate), the least common denominator."""
+        """Return, for each part of amounts (objective and rate), the least common denominator.
+
+        The work counts as steps of the check.
+        """
         scales: dict[tuple[int, Fraction | None], int] = {}
         for amount in amounts:
             for key, value in amount.items():
@@ -77,7 +80,8 @@ class AmountArithmetic:
     def sign(self, amount: Amount) -> Fraction | int:
         """Return a number with the exact sign of an amount.
 
-        The part for the most important objective that is not 0 decides. If all parts are 0, return 0.
+        The part for the most important objective that is not 0 decides. If all parts are 0, return 0. By
+        ``success``, the work counts as steps of the check, and :class:`LimitError` may be raised.
         """
         for level, objective in enumerate(self.objectives or (UNMEASURED,)):
             if objective == "success":
@@ -125,7 +129,8 @@ class AmountArithmetic:
 
         Python's decimal logarithm is correctly rounded, so it is off by less than one unit of its last digit.
         For a rate near 1, the logarithms of denominator and numerator share their first digits. So one more
-        digit is computed for each three bits that they share, and at most 400 more.
+        digit is computed for each three bits that they share, and at most 400 more. The work counts as steps
+        of the check, so :class:`LimitError` may be raised.
         """
         shared = (rate.denominator.bit_length() - (rate.denominator - rate.numerator).bit_length()) // 3
         decimal_context = Context(prec=50 + min(shared, 400))

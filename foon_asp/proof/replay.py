@@ -106,7 +106,7 @@ def predecessors(replay: Replay) -> Iterator[set[int]]:
 
 
 def shared_readers(replay: Replay, is_free: Callable[[str], bool]) -> list[tuple[int, ...]]:
-    """Return, for each copy that two or more steps read, the positions of these steps, ascending.
+    """Return, for each copy that two or more steps read, their positions, ascending.
 
     To *read* a copy is to need it and not to use it up. Copies of endless nodes are omitted: the kitchen has
     them, and the stock does not count them. Copies with a label that ``is_free`` accepts are omitted as well.
@@ -173,7 +173,10 @@ class _Kitchen:
         return Replay(tuple(steps), shortage, remaining, self._stock_needed)
 
     def _run_step(self, position: int, unit: FunctionalUnit) -> Step:
-        """Execute a unit whose preconditions are available, oldest copies first, and return its step."""
+        """Execute a unit whose preconditions are available, oldest copies first, and return its step.
+
+        Its outputs become copies made by the step at ``position``.
+        """
         preconditions, consumes, adds = self._executions.of(unit)
         gone, stayed, came = list[Copy](), list[Copy](), list[Copy]()
         for node, amount in preconditions.items():

@@ -317,7 +317,7 @@ def _before(question: Question, earlier_motion: str, later_motion: str) -> Meani
     On a branch of a proof, some units are used and others excluded. Nodes that the used units can make
     without the earlier motion, and kitchen nodes, are *early*. Other nodes are *late* if a unit that is not
     excluded makes them, and has the earlier motion or needs a late node. A unit with the later motion is
-    barred if it needs no late node.
+    barred if it needs no late node. If both motions are equal, no unit is barred.
     """
     network, needs, gives = question.network, question.needs, question.gives
     with_earlier = question.with_motion(earlier_motion)
@@ -354,8 +354,9 @@ OWN = "own"  # in place of a constraint's name: user rules
 def meaning_of_user_rules(rule: Rule) -> Meaning:
     """Return the meaning of claims about user rules, which a certificate takes on trust.
 
-    A claim is a pair of sets of units: no tree has all units of the first and none of the second. ``rule``
-    also has limits on sums of amounts.
+    A claim is a pair of sets of units: no tree has all units of the first and none of the second. If it has
+    one unit and an empty second set, this unit is removed. If its first set is empty, a unit of the second is
+    required. ``rule`` also has limits on sums of amounts.
     """
     claims = [(frozenset(used), frozenset(without)) for used, without in rule["claims"]]
     removed = [used for used, without in claims if len(used) == 1 and not without]

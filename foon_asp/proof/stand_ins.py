@@ -43,7 +43,8 @@ class StandInClaim(NamedTuple):
 def stand_in_price_data(table: StandInTable) -> list[list[str]]:
     """Return the prices of a table as sorted lists of texts, for the digest of a certificate.
 
-    A list has an edit, an edit and its word, or a pair of labels or nodes, and last the price.
+    A list has an edit, an edit and its word, or a pair of labels or nodes. A pair comes after the text
+    ``label`` or ``node``. The price is last, ``None`` for a difference that is forbidden.
     """
     edits = [[str(edit), str(price)] for edit, price in table.edits.items()]
     words = [[str(edit), word, str(price)] for (edit, word), price in table.words.items()]
@@ -140,7 +141,10 @@ def stand_in_fault(
 
 
 def _singular_word(label: str) -> str:
-    """Return a label in lower case, in the singular, without spaces, hyphens and underscores."""
+    """Return a label in lower case, in the singular, without spaces, hyphens and underscores.
+
+    A word of up to 3 letters, or with the end ``ss``, counts as singular.
+    """
     word = "".join(letter for letter in label.casefold() if letter not in " -_")
     if len(word) > 5 and word[-3:] in {"ies", "oes"}:
         return word[:-3] + {"i": "y", "o": "o"}[word[-3]]
@@ -170,7 +174,11 @@ class _Servers:
         self._prices_of: dict[int, dict[int, Fraction]] = {}
 
     def prices_of(self, served: int) -> dict[int, Fraction]:
-        """Return the price of each node that may serve in place of the node ``served``, by id; cached."""
+        """Return the price of each node that may serve in place of the node ``served``, by id; cached.
+
+        ``served`` itself is omitted. With ``nearest``, nodes that cost more than the cheapest free one are
+        omitted as well.
+        """
         if served not in self._prices_of:
             objects = self._network.objects
             node = objects[served]
@@ -189,6 +197,7 @@ class _Servers:
         """Yield the nodes, by id, that may have a price in place of ``node``; a node may be yielded twice.
 
         Their label is spelled like that of ``node``, or the table lists the pair of labels or of nodes.
+        ``node`` itself is yielded as well.
         """
         yield from self._spelled[_singular_word(node.label)]
         for serving, served in self._table.pairs:
@@ -205,8 +214,9 @@ def _least_dissimilarities(
 ) -> dict[int, Fraction]:
     """Return a lower bound on the dissimilarity of making each node that is not free, by id (h_max).
 
-    A unit costs at least as much as its most expensive input; a stand-in adds its price. Nodes that no goal
-    needs, and nodes that cannot be made even with stand-ins, are omitted.
+    A unit costs at least as much as its most expensive input; a stand-in adds its price. Stand-ins are those
+    of ``servers``, also where the network does not have them. Nodes that no goal needs, and nodes that cannot
+    be made even with stand-ins, are omitted.
     """
     makers: dict[int, list[set[int]]] = {}
     stack = [goal for goal in goals if goal not in servers.free]
@@ -280,7 +290,7 @@ def _nodes_needed(
 ) -> set[int]:
     """Return the nodes, by id, that a tree may need and that are not free.
 
-    They are goals and, recursively, preconditions of their achievers.
+    They are goals and, recursively, preconditions of their achievers, the network's stand-ins included.
     """
     needed = {goal for goal in goals if goal not in free}
     stack = list(needed)

@@ -15,7 +15,7 @@ ToolName = str | ObjectNode
 
 
 class Tool(NamedTuple):
-    """One tool or vessel: the ``number``-th, from 1, of those that are counted under ``name``.
+    """One tool or vessel: the ``number``-th, from 1, that is counted under ``name``.
 
     ``name`` is a label, or an object node for a tool that the kitchen has with contents.
     """
@@ -111,7 +111,7 @@ class ToolNeed(NamedTuple):
     ``changed``: preconditions that are no outputs.
     ``made``: outputs that the unit makes.
     ``others``: inputs of the label that the container rule skips. If no input or output has the label, it has
-    one entry for the tool: an input that is in, on or at it, or ``None`` if there is none.
+    one entry for the tool: an input that is in, on or at it, or ``None`` without such an input.
     """
 
     kept: tuple[ObjectNode, ...]
@@ -123,7 +123,7 @@ class ToolNeed(NamedTuple):
     def number(self) -> int:
         """The number of tools of the label that the unit occupies.
 
-        A tool that changes can be one that is made, so the larger of these numbers counts.
+        A tool that changes can be one that is made, so the larger number counts.
         """
         return len(self.kept) + max(len(self.changed) + len(self.others), len(self.made))
 
@@ -215,7 +215,7 @@ class _Run:
     def _start_step(self, position: int) -> Iterator[str]:
         """Start a step, and yield in words each reason why it cannot start.
 
-        If there is none, its copies, agent and tools are taken from the kitchen. ``position`` is that of the
+        Iterating to the end takes its copies, agent and tools from the kitchen. ``position`` is that of the
         step in the schedule, from 0.
         """
         unit, step = self._plan[position], self._steps[position]
@@ -249,7 +249,7 @@ class _Run:
             self._copies_read[node] -= amount - consumes.get(node, 0)
         self._copies.update(made)
         for tool in step.tools:
-            # some of these nodes are at other tools: nothing looks for them here
+            # some nodes are at other tools: nothing looks for them here
             self._states[tool] = self._states.get(tool, frozenset()).difference(consumes).union(made)
         for resource in _resources_of(step):
             self._step_using.pop(resource, None)

@@ -146,7 +146,10 @@ class UnitCosts:
         return present
 
     def cost(self, member: int) -> Amount:
-        """Return the cost of a unit or item as an amount, with a part for each objective that counts it."""
+        """Return the cost of a unit or item as an amount, with a part for each objective that counts it.
+
+        By ``success``, the part is 1, under the rate of the unit.
+        """
         cost: Amount = {}
         for level, objective in enumerate(self.objectives):
             value = self._cost_by_objective(level, member)
@@ -192,7 +195,8 @@ class UnitCosts:
         """Return the cost of a tree by each objective, as written in a certificate.
 
         ``units`` are the units of the tree, and ``total`` is its cost as an amount. By ``success``, the cost
-        is the product of the rates; a product of 0 is refused. Raises :class:`LimitError` if a cost is too
+        is the product of the rates; a product of 0 is refused. It is a fraction by ``success``, ``attempts``,
+        ``price``, ``dissimilarity`` and measures, and else whole. Raises :class:`LimitError` if a cost is too
         long to be written.
         """
         costs: list[int | Fraction] = []

@@ -157,7 +157,7 @@ class _OrderSearch:
                 self._most_read[node] = max(self._most_read[node], read)
 
     def find_order(self) -> tuple[int, ...] | None:
-        """Return the steps in an order that runs; ``None`` if there is none or the search is given up.
+        """Return the steps in an order that runs; ``None`` if no order runs or the search is given up.
 
         It also sets ``dead_end`` and ``looks_left``. The caller has made sure that no node is overdrawn. The
         copies of goals then suffice at the end.
@@ -235,7 +235,7 @@ class _OrderSearch:
         self._next[self._previous[step]] = self._previous[self._next[step]] = step
 
     def _execute(self, step: int, sign: int) -> None:
-        """Execute a waiting step on the numbers of copies, or undo it with a ``sign`` of -1."""
+        """Execute a waiting step on all counts of copies and waiting steps; undo it with a ``sign`` of -1."""
         self._done ^= 1 << step
         _, consumes, adds = self._steps[step]
         for node, _ in _copies_read(self._steps[step]):

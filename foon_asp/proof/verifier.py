@@ -199,7 +199,7 @@ class Check:
         return total, self.unit_costs.written_costs(units, total)
 
     def _require_kept_rules(self, units: frozenset[int]) -> None:
-        """Refuse a tree of ``units`` that does not keep to the rules."""
+        """Refuse a tree of ``units`` that does not keep to the rules; count the work as steps."""
         self.budget.spend(len(self.ruled.makers) + len(self.network) * len(self.ruled.barred))
         self.budget.spend(len(units) * len(self.ruled.limits))
         others = frozenset(range(len(self.network))) - units if self.rules else frozenset[int]()
@@ -209,7 +209,8 @@ class Check:
     def _barred_units(self, number: int, used: frozenset[int], without: frozenset[int]) -> frozenset[int]:
         """Return the units that the constraint ``number`` bars on a branch.
 
-        No tree of the branch has such a unit: it has all members ``used``, and none of ``without``.
+        No tree of the branch has such a unit: it has all members ``used``, and none of ``without``. The work
+        counts as steps of the check.
         """
         self.budget.spend(len(self.network) + 5 * self.claim_size)
         units = frozenset(member for member in used if member < len(self.network))
@@ -219,7 +220,7 @@ class Check:
         """Check a proof, with its branches, that every tree costs at least ``least``.
 
         If ``least`` is ``None``, the proof is that no tree exists. All costs are then 0, so weights that add
-        up to more than 0 are a contradiction.
+        up to more than 0 are a contradiction. The cuts that the proof names are recorded as used.
         """
         no_members: frozenset[int] = frozenset()
         waiting: list[tuple[Any, frozenset[int], frozenset[int]]] = [(proof, no_members, self.ruled.removed)]
@@ -298,12 +299,12 @@ class Check:
         Refuse weights of cuts that exceed the cost by more. The cuts count as used by the proof.
         """
         total: Amount = {}
-        carried: list[tuple[Amount, Mapping[int, Fraction]]] = []
+        weighted_limits: list[tuple[Amount, Mapping[int, Fraction]]] = []
         for (limit_number,), weight in self.read_weights("limits", limits, self.unit_costs.read_amount):
             limit = self.limit_at(limit_number)
             self.budget.spend(len(used))
             self.arithmetic.add_to(total, self.arithmetic.times(weight, -limit.remaining(used)))
-            carried.append((weight, limit.amounts))
+            weighted_limits.append((weight, limit.amounts))
         rows = [*self.read_weights("weights", weights, self.unit_costs.read_amount)]
         scales = self.arithmetic.common_denominators([weight for _, weight in rows])
         # by part of a weight and member, over the common denominator: whole numbers are added quickly
@@ -331,9 +332,11 @@ class Check:
             It is 0 for a used member, whose cost is added apart.
             """
             capacity = {} if member in used else self.cost(member)
-            if carried and member not in used:
+            if weighted_limits and member not in used:
                 extra = (
-                    self.arithmetic.times(w, amounts[member]) for w, amounts in carried if member in amounts
+                    self.arithmetic.times(w, amounts[member])
+                    for w, amounts in weighted_limits
+                    if member in amounts
                 )
                 capacity = self.arithmetic.sum([capacity, *extra])
             return capacity
@@ -441,7 +444,7 @@ class Check:
         """Return the member that a branch is about, from an object such as ``{"unit": 3}``.
 
         A kitchen item has the key ``item`` and its id as node; a step of constraints has ``step`` and its
-        number from 0.
+        number from 0. Refuse an item unless the objective ``kitchen`` counts items.
         """
         network, keys = self.network, [*read_object(choice)]
         key = keys[0] if keys in (["item"], ["step"]) else "unit"

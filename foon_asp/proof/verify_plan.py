@@ -92,7 +92,7 @@ def verify_plan(certificate: Any, subject: Subject) -> Verified:
     """Check a certificate of a plan against its data; return what it proves.
 
     Raises :class:`RefusedError` with the first fault that is found. Below level 3, every certificate is
-    refused, since consumption depends on contents.
+    refused, since consumption depends on contents. A rule that is not in :data:`PLAN_RULES` is refused.
     """
     rules = check_header(certificate, PLAN, subject)
     require(subject.network.level == 3, "below level 3 nothing says what is used up: contents decide")
@@ -165,7 +165,7 @@ class PlanCheck(Check):
         """The units that no plan executes: removed by a rule, or with an unreachable precondition.
 
         The certificate lists the unreachable nodes under ``unreached``. Refuse the list if a node of it is
-        initial. Refuse it, too, if some unit adds such a node, needs none of them and is not removed.
+        initial. Also refuse it if a unit that is not removed adds a listed node and needs none of the list.
         """
         network = self.network
         stated_ids = self.certificate["unreached"]
@@ -327,7 +327,7 @@ class PlanCheck(Check):
         """Check for each objective that no plan as good by the earlier objectives costs less than ``least``.
 
         If ``least`` is ``None``, the proof is that no plan exists. All costs are then 0, and bounds have to
-        be above 0.
+        be above 0. If a rule allows no plan, ``least`` has to be ``None``, and the proof has to be empty.
         """
         proofs = read_list(proof)
         levels = range(max(1, len(self.objectives)))
@@ -414,7 +414,7 @@ class PlanCheck(Check):
         return cheapest
 
     def _max_count(self, member: int, level: int, node: Node) -> int | None:
-        """Return an upper bound on the count of a member at a node; ``None`` if there is none.
+        """Return an upper bound on the count of a member at a node; ``None`` without a bound.
 
         Bounds come from branches, the stock, limits, and the claimed cost by this and earlier objectives. For
         a unit that no plan executes (``idle``), the bound is 0.
@@ -447,7 +447,7 @@ class PlanCheck(Check):
     def _max_count_by_cost(self, unit: int, level: int, less: bool) -> int | None:
         """Return an upper bound on the count of a unit in plans of at most the claimed cost by an objective.
 
-        With ``less``, the bound is for plans of less than the claimed cost; by ``success``, it is as without.
+        With ``less``, the bound is for plans of less than the claimed cost; ``success`` ignores ``less``.
         Return ``None`` if an execution costs nothing.
         """
         per_execution, max_cost = self.cost_lower_bound(unit, level), self.claimed_cost(level)
@@ -615,7 +615,7 @@ class _FarkasCombination:
         """Add the condition of a cut: a member is executed, or a copy of an item in it is taken.
 
         ``holds`` says whether the cut has a goal, or a precondition of the unit that it is before. If not,
-        the cut is refused.
+        the cut is refused. The cut is recorded as used.
         """
         check = self.check
         require(holds, f"cut {cut} holds neither a goal nor what the unit asks for")

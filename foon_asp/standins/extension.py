@@ -87,7 +87,7 @@ class _NearestStandIns:
         self._servers: dict[int, dict[int, int]] = {}
 
     def pairs(self) -> list[Pair]:
-        """Return the pairs of a served and a serving node, by id, of these stand-ins.
+        """Return the pairs of a served and a serving node, by id, that these stand-ins have, in any order.
 
         If no tree exists, the pairs are enough to prove that.
         """
@@ -108,7 +108,8 @@ class _NearestStandIns:
     def _servers_of(self, served: int) -> dict[int, int]:
         """Return the price of each node, by id, that may serve in place of the node ``served``; cached.
 
-        Nodes that cost more than the cheapest available one are omitted.
+        Nodes that cost more than the cheapest available one are omitted. :meth:`pairs` later removes others
+        from the cache.
         """
         servers = self._servers.get(served)
         if servers is None:
@@ -125,7 +126,10 @@ class _NearestStandIns:
             yield tuple([o for o in problem.needs[unit] if not available[o]])
 
     def _needed_nodes(self, goals: Iterable[int]) -> set[int]:
-        """Return the nodes that are not available and that a tree can need, by id; ``goals`` are included."""
+        """Return the nodes that are not available and that a tree can need, by id.
+
+        They are ``goals`` and, recursively, preconditions of their achievers and nodes that may serve.
+        """
         needed = set(goals)
         stack = list(needed)
         while stack:

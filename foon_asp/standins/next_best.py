@@ -25,7 +25,10 @@ class UsedStandIn(NamedTuple):
 
 
 def stand_ins_of(problem: Problem, tree: Collection[int]) -> list[UsedStandIn]:
-    """Return the stand-ins among the units of a tree, in their order; empty if the problem has none."""
+    """Return the stand-ins among the units of a tree, in their order, each with the next best serving node.
+
+    The list is empty if the problem has no stand-ins.
+    """
     network = problem.network
     units = [unit for unit in tree if network.motions[unit] == STAND_IN]
     if problem.stand_ins is None or not units:

@@ -42,7 +42,7 @@ class NodePrices:
     def servers_of(self, served: int) -> dict[int, int]:
         """Return the price of each node, by id, that may stand in for a node of the network; cached.
 
-        ``served`` is the id of the latter.
+        ``served`` is the id of the latter, which is omitted itself.
         """
         servers = self._servers.get(served)
         if servers is None:
@@ -50,7 +50,10 @@ class NodePrices:
         return servers
 
     def servers_of_node(self, node: ObjectNode) -> dict[int, int]:
-        """Return the price of each node, by id, that may stand in for ``node``, a node of any network."""
+        """Return the price of each node, by id, that may stand in for ``node``, a node of any network.
+
+        ``node`` itself is omitted.
+        """
         objects, by_label = self._objects, self._by_label
         labels = (
             *self._labels_by_spelling.get(spelling_key(node.label), ()),

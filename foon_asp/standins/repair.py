@@ -44,7 +44,7 @@ class Repair:
         ``sources`` has the source of each unit of the tree, and ``table`` the prices of stand-ins. Stand-ins
         in the network are omitted, and so are rates that differ from those of motions. ``is_available`` says
         of a node that is not in the network of ``problem`` whether the kitchen has it. Goals that are in no
-        unit are dropped.
+        unit are dropped. Raises :class:`UserError` as :func:`with_stand_ins` does.
         """
         original = problem.network
         builder = NetworkBuilder()

@@ -504,8 +504,8 @@ PARTS = {
         plain(**TWO, rules=at_most(1), proof=weigh("2", limits=[[0, ["1"]]])),
     ),
     "what is used and paid for carries nothing, limited or not": Part(
-        "if carried and member not in used:",
-        "if carried:",
+        "if weighted_limits and member not in used:",
+        "if weighted_limits:",
         plain(
             **bound("5"),
             rules=at_most(1),
