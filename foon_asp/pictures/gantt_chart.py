@@ -34,7 +34,7 @@ def write_gantt(gantt: Gantt, file: Path) -> None:
 def _draw_chart(gantt: Gantt, figure: "Figure", axes: "Axes") -> None:
     """Draw the chart: a bar and a name for each step, the ticks of the time, and a legend of agents.
 
-    The first step is on top, with names, times and a legend of agents. Each agent has a color; steps without an agent are hatched.
+    The first step is on top. Each agent has a color; steps without an agent are hatched.
     """
     rows = gantt.sorted_rows
     agents = sorted({row.agent for row in rows}, key=lambda agent: (agent is None, agent))
