@@ -12,7 +12,7 @@ from foon_asp.hypergraph.lexicographic import Lexicographic, Vector
 from foon_asp.hypergraph.proof_tree import Cases
 from foon_asp.problem import Objective, Problem, multiplies
 from foon_asp.proof import compiled_rules
-from foon_asp.proof.refusal import LimitError
+from foon_asp.proof.refusal import CheckLimitError
 
 
 class Arrays:
@@ -190,7 +190,7 @@ class Arrays:
         """Return the JSON of a cost or weight, with one part for each objective.
 
         A part is a fraction as text or, for ``success``, the exponents other than 0, by rate. Without
-        objectives, it has one fraction. Raises :class:`LimitError` as :func:`fraction_text` does.
+        objectives, it has one fraction. Raises :class:`CheckLimitError` as :func:`fraction_text` does.
         """
         if not self.objectives:
             return [fraction_text(vector[0])]
@@ -245,8 +245,8 @@ class Arrays:
 
 
 def fraction_text(number: Fraction) -> str:
-    """Return a fraction as text, such as ``16/5``; raise :class:`LimitError` above 4,300 digits."""
+    """Return a fraction as text, such as ``16/5``; raise :class:`CheckLimitError` above 4,300 digits."""
     try:
         return str(number)
     except ValueError:  # Python writes no whole number of more than 4,300 digits
-        raise LimitError("a fraction has more digits than are written") from None
+        raise CheckLimitError("a fraction has more digits than are written") from None

@@ -21,7 +21,7 @@ from foon_asp.problem import Costs, Objective, OptionalData, Problem
 from foon_asp.proof.certificate_header import TREE_FORM, Form, seal
 from foon_asp.proof.certificate_json import read_certificate
 from foon_asp.proof.certificate_subject import Subject
-from foon_asp.proof.refusal import LimitError, RefusedError
+from foon_asp.proof.refusal import CheckLimitError, RefusedError
 from foon_asp.proof.verified_claim import Verified
 from foon_asp.proof.verify_plan import verify_any
 
@@ -257,7 +257,7 @@ def _write_tree_certificate(
     try:
         proof_content = proof_json(proof)
         least = None if bound is None else arrays.vector_json(bound)
-    except LimitError:
+    except CheckLimitError:
         return None
     graph = arrays.graph
     members = (u for cut in cuts for o in cut for u in graph.makers[o] if {*cut}.isdisjoint(graph.needs[u]))
@@ -335,7 +335,7 @@ def write_certificate(
             content["measures"][measure.name]["costs"] = _units_by_cost(measure.costs)
         if verified.trusted:
             _seal_and_verify(certificate, subject)
-    except LimitError:
+    except CheckLimitError:
         return None
     except RefusedError as refused:
         raise BugError(f"a certificate that was found is refused: {refused}") from None

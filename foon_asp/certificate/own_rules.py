@@ -19,7 +19,7 @@ from foon_asp.hypergraph import NONE
 from foon_asp.problem import Contradiction, Objective, Problem
 from foon_asp.problem.number import INT32_MAX
 from foon_asp.proof.canonical_json import canonical_json
-from foon_asp.proof.refusal import LimitError, RefusedError
+from foon_asp.proof.refusal import CheckLimitError, RefusedError
 from foon_asp.proof.rule_meaning import OWN, Rule
 from foon_asp.rules.passed_constraint import (
     Constraint,
@@ -84,7 +84,7 @@ def check_with_clingo(
 
     Clingo searches for a tree that keeps to the rules and violates a claim or limit. It also checks that the
     certificate's tree keeps to the rules. Raises :class:`RefusedError` if a claim is false or clingo cannot
-    run, and :class:`LimitError` if clingo does not finish.
+    run, and :class:`CheckLimitError` if clingo does not finish.
 
     Parameters:
         content: The JSON of the certificate.
@@ -113,7 +113,7 @@ def check_with_clingo(
 def _has_tree(content: Mapping[str, Any], problem: Problem, settings: Settings, rules: str) -> bool:
     """Return whether clingo finds a tree that keeps to the constraints of ``settings`` and to ``rules``.
 
-    Raises :class:`RefusedError` if clingo cannot run, and :class:`LimitError` if it does not finish.
+    Raises :class:`RefusedError` if clingo cannot run, and :class:`CheckLimitError` if it does not finish.
     """
     known_objectives = set(Objective)
     objectives = tuple(Objective(name) for name in content["objective"] if name in known_objectives)
@@ -122,7 +122,7 @@ def _has_tree(content: Mapping[str, Any], problem: Problem, settings: Settings, 
     except UserError as error:
         raise RefusedError(f"clingo cannot be asked what is taken on trust: {error}") from None
     if outcome.status is Status.UNKNOWN:
-        raise LimitError("clingo does not finish with what is taken on trust")
+        raise CheckLimitError("clingo does not finish with what is taken on trust")
     return outcome.status is not Status.INFEASIBLE
 
 
@@ -138,12 +138,12 @@ def _violated_claim(used: list[int], without: list[int]) -> str:
 def _exceeded_limit(amounts: Mapping[str, Sequence[int]], max_sum: int) -> str:
     """Return a clingo aggregate that holds if a tree exceeds a limit.
 
-    ``amounts`` has the units of each amount, by the amount as text. Raises :class:`LimitError` if a sum may
-    be too large for clingo.
+    ``amounts`` has the units of each amount, by the amount as text. Raises :class:`CheckLimitError` if a
+    sum may be too large for clingo.
     """
     counted = [(int(amount), unit) for amount, units in amounts.items() for unit in units]
     if max(sum(amount for amount, _ in counted), abs(max_sum)) > INT32_MAX:
-        raise LimitError("clingo cannot add up what a limit counts")
+        raise CheckLimitError("clingo cannot add up what a limit counts")
     return f"#sum {{ {'; '.join(f'{amount},{unit} : use({unit})' for amount, unit in counted)} }} > {max_sum}"
 
 

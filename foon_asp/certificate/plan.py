@@ -37,7 +37,7 @@ from foon_asp.problem import (
     units_relevant_to_plans,
 )
 from foon_asp.proof.canonical_json import canonical_json
-from foon_asp.proof.refusal import LimitError
+from foon_asp.proof.refusal import CheckLimitError
 from foon_asp.proof.rule_meaning import OWN
 from foon_asp.proof.verify_plan import LOGARITHM_SCALE, PLAN, PLAN_RULES
 
@@ -384,7 +384,7 @@ class _PlanQuestion:
         try:
             cost_order = None if bound is None else self._claim(objectives[0]).order
             bound_json = None if bound is None else [weight_json(vector, cost_order) for vector in bound]
-        except LimitError:
+        except CheckLimitError:
             return None
         return write_certificate(
             PLAN,

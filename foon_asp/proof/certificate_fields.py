@@ -10,7 +10,7 @@ from typing import Any
 
 from foon_asp.network import Network
 from foon_asp.proof.certificate_limits import ALLOWED
-from foon_asp.proof.refusal import LimitError, require
+from foon_asp.proof.refusal import CheckLimitError, require
 
 _RATIONAL = re.compile(r"-?(0|[1-9]\d*)(/[1-9]\d*)?", re.ASCII)
 _SURROGATE = re.compile("[\ud800-\udfff]")
@@ -93,11 +93,11 @@ def read_rational(value: Any) -> Fraction:
     """Return the fraction that a text such as ``3/2`` or ``-7`` stands for.
 
     Raises :class:`RefusedError` for other values and for texts not in lowest terms. Raises
-    :class:`LimitError` for a text that is longer than :class:`CertificateLimits` allows.
+    :class:`CheckLimitError` for a text that is longer than :class:`CertificateLimits` allows.
     """
     require(isinstance(value, str) and bool(_RATIONAL.fullmatch(value)), "expected a number such as 3/2")
     if len(value) > ALLOWED.digits:
-        raise LimitError(f"a fraction has more than {ALLOWED.digits:,} digits")
+        raise CheckLimitError(f"a fraction has more than {ALLOWED.digits:,} digits")
     number = Fraction(value)
     require(str(number) == value, "expected a fraction in lowest terms")
     return number

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from foon_asp.proof.certificate_limits import ALLOWED
-from foon_asp.proof.refusal import LimitError, RefusedError, require
+from foon_asp.proof.refusal import CheckLimitError, RefusedError, require
 
 
 def load_certificate(file: Path) -> Any:
@@ -18,7 +18,7 @@ def load_certificate(file: Path) -> Any:
     with file.open("rb") as stream:
         raw = stream.read(ALLOWED.letters)
         if stream.peek():
-            raise LimitError(f"it has more than {ALLOWED.letters:,} letters")
+            raise CheckLimitError(f"it has more than {ALLOWED.letters:,} letters")
     return read_certificate(raw.decode("utf-8"))
 
 
@@ -26,7 +26,7 @@ def read_certificate(text: str) -> Any:
     """Return the parsed JSON of a certificate.
 
     Raises :class:`RefusedError` if the text is no JSON or is nested too deeply. A key that occurs twice in
-    one object and a number that is not whole are refused as well. Raises :class:`LimitError` if it has
+    one object and a number that is not whole are refused as well. Raises :class:`CheckLimitError` if it has
     more letters or brackets than :class:`CertificateLimits` allows.
     """
 
@@ -41,7 +41,9 @@ def read_certificate(text: str) -> Any:
         raise RefusedError(f"found the number {number[:50]}, expected whole numbers, and fractions in quotes")
 
     if len(text) > ALLOWED.letters or text.count("[") + text.count("{") > ALLOWED.brackets:
-        raise LimitError(f"it has more than {ALLOWED.letters:,} letters or {ALLOWED.brackets:,} brackets")
+        raise CheckLimitError(
+            f"it has more than {ALLOWED.letters:,} letters or {ALLOWED.brackets:,} brackets"
+        )
     try:
         return json.loads(
             text, object_pairs_hook=unique_keys, parse_float=refuse_float, parse_constant=refuse_float

@@ -17,19 +17,20 @@ from foon_asp.proof.certificate_fields import (
     read_rational,
 )
 from foon_asp.proof.certificate_limits import ALLOWED
-from foon_asp.proof.refusal import LimitError, require
+from foon_asp.proof.refusal import CheckLimitError, require
 from foon_asp.proof.rule_meaning import ALL_STEPS, LIBRARY, OWN, Rule
 
 
 def read_rules(value: Any, unit_count: int) -> tuple[Rule, ...]:
     """Return the rules of a claim; refuse rules that are unknown, malformed, repeated or not sorted.
 
-    Claims about user rules count as a rule; only their form is checked. ``unit_count`` is the number of units
-    of the network. Raises :class:`LimitError` if there are more rules than :class:`CertificateLimits` allows.
+    Claims about user rules count as a rule; only their form is checked. ``unit_count`` is the number of
+    units of the network. Raises :class:`CheckLimitError` if there are more rules than
+    :class:`CertificateLimits` allows.
     """
     rules = [read_object(rule) for rule in read_list(value)]
     if len(rules) > ALLOWED.rules:
-        raise LimitError(f"it has more than {ALLOWED.rules} rules")
+        raise CheckLimitError(f"it has more than {ALLOWED.rules} rules")
     for rule in rules:
         name = rule.get("rule")
         if name == OWN:

@@ -14,7 +14,7 @@ from itertools import accumulate
 from typing import TypeAlias
 
 from foon_asp.proof.certificate_limits import ALLOWED
-from foon_asp.proof.refusal import LimitError
+from foon_asp.proof.refusal import CheckLimitError
 from foon_asp.proof.step_budget import StepBudget
 
 # A cost or weight: exact numbers by objective (its index) and rate (``None`` except by success).
@@ -37,7 +37,7 @@ class AmountArithmetic:
     """Exact arithmetic with amounts, whose work counts as steps of a check.
 
     ``objectives``: the objectives, most important first; empty if the claim is that there is no tree.
-    ``budget``: the steps of the check; :class:`LimitError` is raised if they run out.
+    ``budget``: the steps of the check; :class:`CheckLimitError` is raised if they run out.
     ``minus_log``: a cached function from a rate to bounds of ``-log(rate)`` from below and above.
     """
 
@@ -81,7 +81,7 @@ class AmountArithmetic:
         """Return a number with the exact sign of an amount.
 
         The part for the most important objective that is not 0 decides. If all parts are 0, return 0. By
-        ``success``, the work counts as steps of the check, and :class:`LimitError` may be raised.
+        ``success``, the work counts as steps of the check, and :class:`CheckLimitError` may be raised.
         """
         for level, objective in enumerate(self.objectives or (UNMEASURED,)):
             if objective == "success":
@@ -97,9 +97,9 @@ class AmountArithmetic:
 
         Bounds of the logarithms decide if they can. Otherwise, exponents are multiplied by their common
         denominator. The product of all ``rate ** e`` is then a quotient of whole numbers, and is compared
-        with 1. The sign is positive if the product is below 1. Raises :class:`LimitError` if the product is
-        too long. If the rate 0 has an exponent, the sign of this exponent decides, since ``-log(0)`` is
-        infinite.
+        with 1. The sign is positive if the product is below 1. Raises :class:`CheckLimitError` if the
+        product is too long. If the rate 0 has an exponent, the sign of this exponent decides, since
+        ``-log(0)`` is infinite.
         """
         if zero_exponent := exponents.get(Fraction(0)):
             return zero_exponent
@@ -115,7 +115,7 @@ class AmountArithmetic:
         powers = {rate: int(e * common) for rate, e in exponents.items()}
         bits = sum(abs(e) * rate.denominator.bit_length() for rate, e in powers.items())
         if bits > ALLOWED.product_bits:
-            raise LimitError("products of rates are too close to be told apart in reasonable time")
+            raise CheckLimitError("products of rates are too close to be told apart in reasonable time")
         self.budget.spend(bits * math.isqrt(bits) // 64)
         above, below = 1, 1
         for rate, power in powers.items():
@@ -130,7 +130,7 @@ class AmountArithmetic:
         Python's decimal logarithm is correctly rounded, so it is off by less than one unit of its last digit.
         For a rate near 1, the logarithms of denominator and numerator share their first digits. So one more
         digit is computed for each three bits that they share, and at most 400 more. The work counts as steps
-        of the check, so :class:`LimitError` may be raised.
+        of the check, so :class:`CheckLimitError` may be raised.
         """
         shared = (rate.denominator.bit_length() - (rate.denominator - rate.numerator).bit_length()) // 3
         decimal_context = Context(prec=50 + min(shared, 400))

@@ -17,7 +17,7 @@ class RefusedError(Exception):
     """
 
 
-class LimitError(RefusedError):
+class CheckLimitError(RefusedError):
     """The certificate may be right, but it exceeds a limit of :class:`CertificateLimits`."""
 
 

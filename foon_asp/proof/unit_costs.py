@@ -16,7 +16,7 @@ from foon_asp.proof.certificate_fields import read_list, read_numbers, read_obje
 from foon_asp.proof.certificate_limits import ALLOWED
 from foon_asp.proof.certificate_subject import Subject
 from foon_asp.proof.exact_amounts import UNMEASURED, Amount, bit_length
-from foon_asp.proof.refusal import LimitError, require
+from foon_asp.proof.refusal import CheckLimitError, require
 from foon_asp.proof.stand_ins import price_of
 from foon_asp.proof.step_budget import StepBudget
 from foon_asp.proof.verified_claim import Trusted
@@ -194,10 +194,10 @@ class UnitCosts:
     def written_costs(self, units: list[int], total: Amount) -> list[int | Fraction]:
         """Return the cost of a tree by each objective, as written in a certificate.
 
-        ``units`` are the units of the tree, and ``total`` is its cost as an amount. By ``success``, the cost
-        is the product of the rates; a product of 0 is refused. It is a fraction by ``success``, ``attempts``,
-        ``price``, ``dissimilarity`` and measures, and else whole. Raises :class:`LimitError` if a cost is too
-        long to be written.
+        ``units`` are the units of the tree, and ``total`` is its cost as an amount. By ``success``, the
+        cost is the product of the rates; a product of 0 is refused. It is a fraction by ``success``,
+        ``attempts``, ``price``, ``dissimilarity`` and measures, and else whole. Raises
+        :class:`CheckLimitError` if a cost is too long to be written.
         """
         costs: list[int | Fraction] = []
         for level, objective in enumerate(self.objectives):
@@ -205,12 +205,12 @@ class UnitCosts:
                 rates = [self.rate(u) for u in units]
                 require(0 not in rates, "a tree that never succeeds is no better than another")
                 if sum(rate.denominator.bit_length() for rate in rates) > ALLOWED.written_bits:
-                    raise LimitError("the success rate of the tree is too long a number to be written")
+                    raise CheckLimitError("the success rate of the tree is too long a number to be written")
                 costs.append(math.prod(rates, start=Fraction(1)))
             else:
                 value = total.get((level, None), Fraction(0))
                 if max(value.numerator, value.denominator).bit_length() > ALLOWED.written_bits:
-                    raise LimitError("what the tree costs is too long a number to be written")
+                    raise CheckLimitError("what the tree costs is too long a number to be written")
                 fractional = {"attempts", "price", "dissimilarity", *self.measures}
                 costs.append(value if objective in fractional else int(value))
         return costs

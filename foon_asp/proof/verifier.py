@@ -51,7 +51,7 @@ def verify(certificate: Any, subject: Subject) -> Verified:
     """Check a certificate of a tree against its data; return what it proves.
 
     The time is linear in the number of cuts times the size of the network. Raises :class:`RefusedError` with
-    the first fault that is found. Raises :class:`LimitError` if the check takes more steps than
+    the first fault that is found. Raises :class:`CheckLimitError` if the check takes more steps than
     :class:`CertificateLimits` allows, which is a few seconds.
     """
     rules = check_header(certificate, TREE_FORM, subject)

@@ -494,8 +494,8 @@ def _needs_whole_network(content: Any) -> bool:
 def _check_measures_with_clingo(problem: Problem, verified: Verified) -> None:
     """Check the costs of units by measures that a certificate states.
 
-    Raises :class:`RefusedError` for a wrong cost or wrong rules, and :class:`LimitError` if clingo takes
-    longer than a minute for a measure.
+    Raises :class:`RefusedError` for a wrong cost or wrong rules, and :class:`CheckLimitError` if clingo
+    takes longer than a minute for a measure.
     """
     from foon_asp.rules.measure import Measure, wrong_cost  # noqa: PLC0415 (the solver)
 
@@ -509,6 +509,6 @@ def _check_measures_with_clingo(problem: Problem, verified: Verified) -> None:
         except LimitError as limit:
             if deadline.interrupted:
                 raise
-            raise refusal.LimitError(f"the rules of {measure.name}: {limit.stopped}") from None
+            raise refusal.CheckLimitError(f"the rules of {measure.name}: {limit.stopped}") from None
         if wrong is not None:
             raise RefusedError(wrong)

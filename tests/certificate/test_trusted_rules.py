@@ -16,7 +16,7 @@ from foon_asp.certificate.own_rules import check_with_clingo, with_own_rules
 from foon_asp.problem import ContainerRule, Objective
 from foon_asp.proof.certificate_header import seal
 from foon_asp.proof.certificate_rules import trusted_claims
-from foon_asp.proof.refusal import LimitError, RefusedError
+from foon_asp.proof.refusal import CheckLimitError, RefusedError
 from foon_asp.proof.rule_meaning import Rule
 from foon_asp.resources import encodings_folder
 from foon_asp.rules.passed_constraint import given_constraint
@@ -319,5 +319,5 @@ def test_clingo_says_what_limits_are_not_true() -> None:
         with pytest.raises(RefusedError, match="what is taken on trust is not true"):
             check_with_clingo(none, {**own, "limits": [limit]}, BOILED)
     for limit in ([{str(2**31): [0]}, 1], [{"1": [0]}, -(2**31)]):
-        with pytest.raises(LimitError, match="clingo cannot add up"):
+        with pytest.raises(CheckLimitError, match="clingo cannot add up"):
             check_with_clingo(none, {**own, "limits": [limit]}, BOILED)

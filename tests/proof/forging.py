@@ -129,7 +129,7 @@ def require_its_check_alone(by: tuple[ModuleType, ...], name: str, forged: Forge
     except Exception as error:
         failed = type(error).__name__
     assert (failed != "") == (forged.stays != "")
-    assert (forged.stays == KIND) == (failed not in ("", "RefusedError", "LimitError"))
+    assert (forged.stays == KIND) == (failed not in ("", "RefusedError", "CheckLimitError"))
 
 
 def require_right(

@@ -20,7 +20,7 @@ from foon_asp.proof.certificate_json import load_certificate, read_certificate
 from foon_asp.proof.certificate_limits import ALLOWED
 from foon_asp.proof.certificate_rules import trusted_claims
 from foon_asp.proof.certificate_subject import Subject
-from foon_asp.proof.refusal import LimitError, RefusedError
+from foon_asp.proof.refusal import CheckLimitError, RefusedError
 from foon_asp.proof.rule_meaning import OWN
 from foon_asp.proof.verified_claim import Verified
 from foon_asp.text.line_parser import parse_node
@@ -624,12 +624,12 @@ def test_files_have_their_limits(tmp_path: Path) -> None:
     file.write_text(text)
     assert load_certificate(file) == []
     file.write_text(text + " ")
-    with pytest.raises(LimitError, match=f"^{FAR}$"):
+    with pytest.raises(CheckLimitError, match=f"^{FAR}$"):
         load_certificate(file)
     brackets = '"' + "[" * 600_000 + "{" * 400_000 + '"'
     assert len(read_certificate(brackets)) == 1_000_000
     for longer in (text + " ", brackets + "["):
-        with pytest.raises(LimitError, match=f"^{FAR} or 1,000,000 brackets$"):
+        with pytest.raises(CheckLimitError, match=f"^{FAR} or 1,000,000 brackets$"):
             read_certificate(longer)
 
 

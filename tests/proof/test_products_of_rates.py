@@ -10,7 +10,7 @@ from fractions import Fraction
 import pytest
 
 from foon_asp.problem import Problem
-from foon_asp.proof.refusal import LimitError
+from foon_asp.proof.refusal import CheckLimitError
 from tests.proof.by_hand import recipe, refusal
 
 TOO_CLOSE = "products of rates are too close to be told apart in reasonable time"
@@ -32,7 +32,7 @@ def proved(problem: Problem, exponents: dict[str, str], opposite: int) -> bool:
     bound = {rate: str(opposite * Fraction(e)) for rate, e in exponents.items()}
     said = refusal(problem, claim="bound", objective=["success"], bound=[bound])
     if said == TOO_CLOSE:
-        raise LimitError(said)
+        raise CheckLimitError(said)
     assert said in ("", "the weights do not add up to enough")
     return said == ""
 
@@ -127,7 +127,7 @@ def test_logarithms_have_as_many_digits_as_they_need(one: str, other: str, width
         if seen:
             assert sign(problem, exponents) == (1 if off > 0 else -1)
         else:
-            with pytest.raises(LimitError):
+            with pytest.raises(CheckLimitError):
                 sign(problem, exponents)
 
 
@@ -136,7 +136,7 @@ def test_products_of_up_to_250_000_bits_are_multiplied_out() -> None:
     powers = rated("1/2", "1/4", "1/8")
     assert sign(powers, {"1/2": "-75000", "1/8": "25000"}) == 0  # 2 * 75,000 and 4 * 25,000
     assert sign(powers, {"1/2": "75000", "1/8": "-25000"}) == 0
-    with pytest.raises(LimitError):  # 2 * 75,000 and 4 * 24,998 and 3 * 3 are 250,001
+    with pytest.raises(CheckLimitError):  # 2 * 75,000 and 4 * 24,998 and 3 * 3 are 250,001
         sign(powers, {"1/2": "-75000", "1/4": "3", "1/8": "24998"})
 
 
@@ -146,5 +146,5 @@ def test_bounds_that_touch_zero_decide_nothing() -> None:
     two = int(Fraction(fifty.ln(Decimal(2))) * 10**50) - 1
     three = int(Fraction(fifty.ln(Decimal(3))) * 10**49) + 1
     for opposite in (1, -1):
-        with pytest.raises(LimitError):
+        with pytest.raises(CheckLimitError):
             proved(RATES, {"1/2": str(10 * three), "1/3": str(-two)}, opposite)

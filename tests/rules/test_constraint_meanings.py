@@ -18,7 +18,7 @@ from foon_asp.network import NetworkBuilder, ObjectNode, Source, UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.proof.certificate_json import read_certificate
 from foon_asp.proof.compiled_rules import CompiledRules
-from foon_asp.proof.refusal import LimitError, RefusedError
+from foon_asp.proof.refusal import CheckLimitError, RefusedError
 from foon_asp.proof.rule_meaning import LIBRARY, OWN, Meaning, sources_read
 from foon_asp.proof.verifier import verify
 from foon_asp.text.line_parser import parse_node
@@ -336,7 +336,7 @@ def test_clingo_that_does_not_finish_checks_nothing() -> None:
     for tree, claims in (([0], []), (None, [[[1], []]])):
         own = owning(*claims)
         content = {"tree": tree, "objective": ["units"] if tree else []}
-        with pytest.raises(LimitError, match="clingo does not finish"):
+        with pytest.raises(CheckLimitError, match="clingo does not finish"):
             check_with_clingo(content, own, kitchen, Deadline(0.0))
     check_with_clingo({"tree": [0], "objective": ["units", "mine"]}, owning(), kitchen)
     with pytest.raises(RefusedError, match="is not true"):

@@ -24,7 +24,7 @@ from foon_asp.hypergraph import ALL, NONE
 from foon_asp.network import FunctionalUnit
 from foon_asp.problem import ContainerRule, Objective, Problem, needed_inputs, parse_objectives, reach
 from foon_asp.proof.certificate_header import seal
-from foon_asp.proof.refusal import LimitError
+from foon_asp.proof.refusal import CheckLimitError
 from foon_asp.results.figure_text import figure_text
 from foon_asp.rules.measure import read_measures
 from foon_asp.text.diagnostics import InputError
@@ -505,7 +505,7 @@ def test_rules_of_a_stranger_are_stopped(monkeypatch: pytest.MonkeyPatch, tmp_pa
     endless = "p(1..9999). q(X+Y+Z) :- p(X), p(Y), p(Z). cost(mine,U,N) :- inputs(U,N), q(_)."
     forged = found._replace(content=sealed(found.content, endless))
     assert foon_asp.verify(replace(problem, measures={}), forged)
-    with pytest.raises(LimitError, match=r"the rules of mine: the time limit of 0\.3 s while"):
+    with pytest.raises(CheckLimitError, match=r"the rules of mine: the time limit of 0\.3 s while"):
         foon_asp.verify(replace(problem, measures={}), forged, with_clingo=True)
 
 
