@@ -10,7 +10,7 @@ from foon_asp.text.diagnostics import Diagnostic
 
 
 def _is_seldom(count: int, total: int) -> bool:
-    """Whether ``count`` is at most an eighth of ``total``, the number of units with a motion.
+    """Whether ``count`` of ``total`` units with a motion are few: at most one in eight.
 
     False for fewer than three units, which tell nothing about a motion.
     """
@@ -82,10 +82,10 @@ def find_outputs_from_nothing(context: Context) -> Iterator[Diagnostic]:
 
 
 def _units_by_made_node(context: Context) -> dict[ObjectNode, int]:
-    """Return, by node, the id of the first unit that makes it and mentions its label among the inputs.
+    """Return, by node, the id of the first unit that makes it out of inputs with its label.
 
-    An input mentions its own label, its contents, and the objects of its relations. Nodes without such a unit
-    are left out.
+    The label may be that of an input, or a name in its contents or relations. Nodes without such a unit are
+    left out.
     """
     units: dict[ObjectNode, int] = {}
     for side in context.sides:
