@@ -108,7 +108,8 @@ def _differ_little(needed: ObjectNode, made: ObjectNode, distance: int) -> bool:
 
     - in a slip of spelling, in one state, or in one of several ingredients;
     - in one relation, if ``needed`` has a relation or contents, or if the distance is at most 2;
-    - in one state or relation in place of another, if they have several attributes and the distance is at most 8;
+    - in one state or relation in place of another, if they have several attributes and the distance is at
+      most 8;
     - in their labels alone, if they have several attributes and the distance is at most 2.
     """
     if needed.label != made.label:

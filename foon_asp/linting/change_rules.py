@@ -82,10 +82,10 @@ def find_outputs_from_nothing(context: Context) -> Iterator[Diagnostic]:
 
 
 def _units_by_made_node(context: Context) -> dict[ObjectNode, int]:
-    """Return, by node, the id of the first unit that makes it out of inputs with its label.
+    """Return, by node, the id of the first unit that makes it out of inputs that name its label.
 
-    The label may be that of an input, or a name in its contents or relations. Nodes without such a unit are
-    left out.
+    The names of an input are its label, its contents and the objects of its relations. Nodes without such a
+    unit are left out.
     """
     units: dict[ObjectNode, int] = {}
     for side in context.sides:

@@ -14,8 +14,8 @@ _NO_NAMES: frozenset[str] = frozenset()
 class Changes(NamedTuple):
     """The changes of a unit that may be slips. Nodes are given as ids.
 
-    ``lost``: by container, the names of the contents that it loses. The container is an output that keeps other
-    contents.
+    ``lost``: by container, the names of the contents that it loses. The container is an output that keeps
+    other contents.
     ``gained``: by such a container, the names of the contents that it gains.
     ``new``: outputs that come from no input.
     ``gone``: inputs that are in no output.

@@ -17,7 +17,8 @@ class _SlipLimits(NamedTuple):
     ``ratio``, ``high_ratio``, ``highest_ratio``: how many times as often the other name must be mentioned, at
     least.
     ``short``, ``medium``, ``long``: the least numbers of letters of the shorter word. Shorter words are
-    mostly different words (off and of, bell and bel). Lower limits find more slips and report more right words.
+    mostly different words (off and of, bell and bel). Lower limits find more slips and report
+    more right words.
     ``compared``: how many of the names that share all letters but one are compared, the most frequent first.
     ``name_letters``: the greatest number of letters of a name; longer texts are no names, and slow to
     compare.

@@ -133,7 +133,7 @@ def _odd_times(steps: list[_Step]) -> dict[int, tuple[str, int]]:
     def span_fault(start: _Clock, end: _Clock) -> str:
         """Return the message about a span that ends before it begins or is too long; empty for a likely one.
 
-        It is too long from 20 minutes on if it is also 20 times as long as the median of all spans.
+        A span is too long if it lasts at least 20 minutes and at least 20 times the median of all spans.
         """
         if end.seconds < start.seconds:
             return f"the step ends at {end.text}, before it begins at {start.text}"

@@ -170,7 +170,7 @@ def read_vocabulary(file: Path) -> Vocabulary:
     rows: list[_Row] = []
 
     def read_row(kind: str, row: str, _: object) -> None:
-        """Add a line, of which ``row`` is the text after the kind, to ``rows``."""
+        """Add a line to ``rows``; ``row`` is the text of the line after the kind."""
         if kind not in _NUMBERS:
             raise LineError(1, repr(kind), tuple(_NUMBERS))
         name, *numbers = row.split("\t")
