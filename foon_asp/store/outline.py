@@ -227,7 +227,10 @@ class _Lists:
         return np.unique(self.entries[self.positions_of(lists)[0]]).astype(np.int64)
 
     def inverse(self, size: int) -> "_Lists":
-        """Return ``size`` new lists: list ``n`` has the numbers of the lists with the entry ``n``, ascending."""
+        """Return new lists: list ``n`` has the numbers of the lists with the entry ``n``, ascending.
+
+        There are ``size`` new lists.
+        """
         counts = np.bincount(self.entries, minlength=size).astype(np.uint32)
         return _Lists(counts, self.owners[np.argsort(self.entries, kind="stable")])
 
