@@ -93,8 +93,8 @@ class Nearby:
         """The relaxation of the problem in which all open nodes are available.
 
         For objectives that are sums over units, its optimum is a lower bound on the optimum of the whole
-        network. The reason is that any tree of the whole network, cut down to the units that were read, is a
-        tree of the relaxation.
+        network. The reason: from any tree of the whole network, the units that were read are a tree of the
+        relaxation.
 
         User rules see the kitchen without the open nodes. So a rule that does not depend on the available
         nodes holds for the same units here as in the whole network.

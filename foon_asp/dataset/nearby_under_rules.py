@@ -102,8 +102,8 @@ class _Search:
         """Return the optimum, or the incumbent if a limit is reached or optimality is not proved.
 
         If no tree keeps the rules, return an outcome that proves this. Return ``None`` if the rules depend on
-        more than the units of a tree and its kitchen, or if the distances of units are not known. Raises
-        :class:`LimitError` at a limit while the store is read.
+        more than the units of a tree and its kitchen. Also return ``None`` if the distances of units are not
+        known. Raises :class:`LimitError` at a limit while the store is read.
         """
         settings, nearby = self._settings, self._nearby
         rules = rules_for_varying_kitchens(settings)

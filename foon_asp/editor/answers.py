@@ -60,10 +60,10 @@ def diagnostics(checked: CheckedText) -> list[Json]:
 def completion(text: EditedText, names: Names, parameters: object) -> Json:
     """Return the completions at the position in the parameters of a request, at most 100.
 
-    At the beginning of a line, the completions are those of :func:`_line_head_items`. In a field, they are
-    the names that contain the text before the position, and that have a kind that may stand there. Names that
-    begin with this text come first, and then the most frequent. Case is ignored. The text typed so far is a
-    completion only if it also stands elsewhere. ``isIncomplete`` says that more than 100 names match.
+    At the beginning of a line, the completions are those of :func:`_line_head_items`. In a field, a name is a
+    completion if its kind may stand there and it contains the text before the position. Names that begin with
+    this text come first, and then the most frequent. Case is ignored. The text typed so far is a completion
+    only if it also stands elsewhere. ``isIncomplete`` says that more than 100 names match.
     """
     line, letter = text.requested_position(parameters)
     content = text.lines[line]
@@ -91,8 +91,7 @@ def _completion_item(
     """Return the completion item of a name in a field of a line.
 
     If the head of the line has no id, the item adds the most frequent id of the name. After a word of
-    relations at the end of the line, it adds a tab and the opening bracket that is more frequent after the
-    word.
+    relations at the end of the line, it adds a tab and the opening bracket that most often follows the word.
     """
     count, mentions = names.counts[kind][name], names.mentions[kind][name]
     ids = _id_counts(names, kind, name)

@@ -49,8 +49,8 @@ def _reason_to_swap_brackets(
     """Return in words why an attribute probably needs the other kind of bracket; empty if nothing says so.
 
     ``counts``: by attribute, the number of lines that have it. :func:`find_other_brackets` names the three
-    possible reasons. If there are several ingredients, only the first reason is looked for. It is also the
-    only one if the word nearly always has the kind of bracket that the attribute has.
+    possible reasons. The second and third reason need a single object in the brackets, and a word without a
+    usual kind of bracket.
     """
     other: Bracket = Contents if isinstance(attribute, Relation) else Relation
     usual = vocabulary.usual_bracket(attribute.word)

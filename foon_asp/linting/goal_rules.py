@@ -46,8 +46,8 @@ def find_unknown_items(context: Context) -> Iterator[Diagnostic]:
 def find_wrong_amounts(context: Context) -> Iterator[Diagnostic]:
     """A line `# Amount:` with a tab and a number stands below an object line and says how many there are.
 
-    An object line has at most one such line. If a kitchen or a list of goals has an object several times, all
-    entries of this object have the same amount, or none has an amount.
+    An object line has at most one such line. A kitchen or a list of goals may have an object several times.
+    Then all its entries have the same amount, or none has an amount.
     """
     yield from context.remarks.get("amount", [])
     for sheet in context.sheets:

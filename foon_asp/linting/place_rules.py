@@ -27,13 +27,13 @@ def find_unheld_objects(context: Context) -> Iterator[Diagnostic]:
 def unheld_nodes(side: Side, habits: Habits) -> FaultyNodes:
     """Yield each food that is in a container whose contents do not list it, with the message.
 
-    Skipped are containers
-    - with several such foods,
+    Containers are skipped
+    - that have several such foods,
     - whose label is not unique on this side,
     - that are ingredients themselves, or
-    - that hold one of their listed contents on this side, if it has contents itself.
+    - that hold on this side a listed content which has contents itself.
 
-    Skipped are foods
+    Foods are skipped
     - that another node contains,
     - that have contents of their own, or
     - that share a word with the contents.
@@ -89,10 +89,10 @@ def find_objects_in_other_places(context: Context) -> Iterator[Diagnostic]:
 
 
 def misplaced_nodes(side: Side, labels: Collection[str], habits: Habits) -> FaultyNodes:
-    """Yield the nodes in or on an object that this side does not list, if another node contains them.
+    """Yield each node that another node contains, and that is in or on an object missing on this side.
 
-    With each node comes the message. ``labels`` are those of all nodes of the network. The object must have
-    one of these labels.
+    With each node comes the message. ``labels`` are the labels of all nodes of the network; the label of the
+    missing object is among them.
 
     A node is skipped
     - if the object or the containing node is an ingredient,

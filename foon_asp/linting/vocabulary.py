@@ -93,7 +93,8 @@ class Vocabulary:
     def _deletion_indexes(self) -> dict[Kind, dict[str, list[str]]]:
         """By kind of name, the :func:`deletion_index` of the words in its names.
 
-        States and motions share an index. For each word in ed, the word with un before it is indexed as well.
+        States and motions share an index. For each word that ends in ed, a word with un before it is added:
+        unpeeled for peeled.
         """
         indexes = {}
         for kind in Kind:

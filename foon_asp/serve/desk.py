@@ -99,8 +99,11 @@ class Desk:
     def opening_data(self) -> Json:
         """Return the data with which the page opens, by the names that its script reads.
 
-        These are the goals of the goals file, the kitchen, the objectives, the further answers to choose
-        from, the conditions that are fixed, and the opening form.
+        These are
+        - the goals of the goals file, the kitchen and the objectives,
+        - the further answers to choose from,
+        - the conditions that are fixed, and
+        - the opening form.
         """
         dataset = self._foon.dataset
         return {

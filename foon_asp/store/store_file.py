@@ -70,7 +70,7 @@ class StoreFile:
     def rows(self, statement: str, ids: Iterable[int]) -> sqlite3.Cursor:
         """Run a statement, and return a cursor over its rows.
 
-        ``IN ids`` in the statement means being one of the ``ids``.
+        In the statement, ``IN ids`` is true for the members of ``ids``.
         """
         in_list = "IN (SELECT value FROM json_each(?))"
         return self.database.execute(statement.replace("IN ids", in_list), (json.dumps([*ids]),))

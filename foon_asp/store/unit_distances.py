@@ -21,8 +21,8 @@ class UnitDistances:
     for nodes in the mask ``kitchen``, which are available, and in ``skipped``, which units do not need.
 
     The cost of a unit is usually 1. For the ``objective`` ``success`` with ``rates``, it is the negative
-    logarithm of the rate of the motion, scaled to an integer and rounded down. A motion without a rate then
-    costs 0.
+    logarithm of the rate of the motion. This cost is scaled to an integer and rounded down. A motion without
+    a rate then costs 0.
     """
 
     def __init__(
@@ -86,7 +86,8 @@ class UnitDistances:
     def relevant_units(
         self, kinds: Sequence[Mask] | None, executed: Collection[int], max_cost: int
     ) -> list[int]:
-        """Return the ids of units that may be in a cheap enough tree that has a unit of one of the kinds.
+        """Return the ids of units that may be in a tree of at most ``max_cost`` with a unit of one of the
+        kinds.
 
         These are the units of the ``kinds``, and the units that lead to them. All have a distance of at most
         ``max_cost``.
