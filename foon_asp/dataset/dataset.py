@@ -268,9 +268,11 @@ class Dataset:
     def command_goal_ids(self, names: Sequence[str | ObjectNode]) -> tuple[int, ...]:
         """Return the ids of the goals that a command names, each once.
 
-        Without names, return all assumed goals, or the node of the only entry of the goals file. Raises
-        :class:`UserError` for a name that means no object node or several. Without names, raises it if the
-        file has several entries, or if there is no goal to assume.
+        Without names, return all assumed goals, or the node of the only entry of the goals file.
+
+        Raises :class:`UserError`
+        - for a name that means no object node or several, and
+        - without names, if the file has several entries, or if there is no goal to assume.
         """
         if not names and self.goals_from and not self.goal_entries:
             raise UserError(
@@ -572,8 +574,11 @@ class Dataset:
         """Return the ids of the goals that a Python caller names, each once.
 
         Without a name, return the node of the only entry of the goals file. Without a name and a file, return
-        the only assumed goal. Raises :class:`UserError` for a name that means no object node or several.
-        Without a name, raises it if there are several goals or none.
+        the only assumed goal.
+
+        Raises :class:`UserError`
+        - for a name that means no object node or several, and
+        - without a name, if there are several goals or none.
         """
         named = tuple(dict.fromkeys(node_ids(self, names, "goal")))
         if named:

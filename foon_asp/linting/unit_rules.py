@@ -56,8 +56,8 @@ def find_repeated_objects(context: Context) -> Iterator[Diagnostic]:
     """Inputs and outputs of a unit, and states of an object, are sets: what stands twice counts once.
 
     Two eggs are two nodes only if they differ, for example in their places. A table (`unit_amounts.txt`) says
-    how many are taken. Often a state line is missing under one of the two. In JSON and neutral lines, a node
-    that is listed twice is meant twice.
+    how many are taken. Often a state line is missing under one of two equal objects. In JSON and neutral
+    lines, a node that is listed twice is meant twice.
     """
     network = context.network
     for unit, copies in enumerate(context.files.copies):

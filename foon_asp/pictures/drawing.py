@@ -191,8 +191,8 @@ class _Canvas:
     def shared_box(self, node: ObjectNode, achiever: int | None = None) -> str:
         """Return the name of the one box of a node, which is added at the first call.
 
-        Its role is goal, kitchen item or object, the first that fits. With ``achiever``, it is the box of the
-        copy that the step at this position makes.
+        The role of the box is goal, kitchen item or object, the first that fits. With ``achiever``, the box
+        is for the copy that the step at this position makes.
         """
         if (node, achiever) not in self._names:
             role = Role.OBJECT

@@ -86,8 +86,7 @@ class UnitDistances:
     def relevant_units(
         self, kinds: Sequence[Mask] | None, executed: Collection[int], max_cost: int
     ) -> list[int]:
-        """Return the ids of units that may be in a tree of at most ``max_cost`` with a unit of one of the
-        kinds.
+        """Return the ids of units that may be in a cheap enough tree with a unit of one of the kinds.
 
         These are the units of the ``kinds``, and the units that lead to them. All have a distance of at most
         ``max_cost``.
