@@ -33,7 +33,7 @@ class NearbyTuning(NamedTuple):
     ``max_units``: the greatest number of units read one by one, near the goals or far from them. For more,
     reading the whole store is faster.
     ``widths``: limits on the units read for a first tree, tried in order. Each is a pair: the number of units
-    of a kind, and how many steps of distance they may lie beyond the nearest one.
+    of a kind, and how many steps farther they may be than the nearest unit of the farthest kind.
     """
 
     max_units: int = 30_000

@@ -50,7 +50,7 @@ def find_lost_contents(context: Context) -> Iterator[Diagnostic]:
 
 @rule("gained-contents", WARNING, "contents that gain something, which no input has")
 def find_gained_contents(context: Context) -> Iterator[Diagnostic]:
-    """A container keeps its contents in a unit and has further contents after it, which are in no input.
+    """A container keeps its contents in a unit and gets further contents, which are in no input.
 
     Motions that show what is inside, such as `open`, are not reported.
     """

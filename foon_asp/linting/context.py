@@ -96,7 +96,7 @@ class Context:
     def finding_at_node(self, copy: Copy, side: int, node: ObjectNode, message: str) -> Diagnostic:
         """Return a finding at the object line of an input (``side`` 0) or output (1) of a copy of a unit.
 
-        The line is that of :meth:`node_line`, the column that of the label.
+        Its line is the one that :meth:`node_line` returns. Its column is that of the label.
         """
         sheet = self.sheets[copy.sheet]
         return sheet.finding(message, self.node_line(copy, side, node), node.label)

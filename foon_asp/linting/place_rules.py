@@ -164,9 +164,9 @@ def _unplaced_foods(side: Side, places: Collection[str], habits: Habits) -> Faul
 
 
 def inputs_placed_in_outputs(side: Side) -> FaultyNodes:
-    """Yield each input in or on an object that only the outputs list, with the beginning of a message.
+    """Yield inputs in or on an object that only the outputs list, each with the beginning of a message.
 
-    ``side`` are the inputs of a unit. Each such object is reported once.
+    ``side`` are the inputs of a unit. An object is reported for one input only.
     """
     own_labels, other_labels = ({node.label for node in nodes} for nodes in (side.nodes, side.others))
     for node in side.nodes:

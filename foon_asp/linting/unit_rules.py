@@ -89,8 +89,8 @@ def _repeated_nodes(context: Context, copy: Copy) -> Iterator[Diagnostic]:
 def find_second_relations(context: Context) -> Iterator[Diagnostic]:
     """An object can be in two relations, such as `on [tray]` and `covered [foil]`, but not in two places.
 
-    It cannot have two relations by one word, or two lists of contents by one word either. When an object is
-    moved, its old place has to be removed. All contents belong on one line.
+    It cannot have two relations with the same word, or two lists of contents with the same word. When an
+    object is moved, its old place has to be removed. All contents belong on one line.
     """
     for sheet in context.sheets:
         labels = {

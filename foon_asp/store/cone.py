@@ -26,8 +26,8 @@ class Producers(Protocol):
 class Cone:
     """The units that goals can need, as far as they were read. Ids are those in the whole network.
 
-    A node is needed if it is a goal, or if a unit of the cone needs it under the container rule with its
-    ``utensils``.
+    A node is needed if it is a goal, or an input that a unit of the cone needs. The container rule, with its
+    ``utensils``, says which inputs a unit needs.
 
     ``units``: the units that were read.
     ``open``: the needed nodes that are not ``available`` and whose producers were not read yet.
