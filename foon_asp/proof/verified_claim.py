@@ -14,8 +14,7 @@ class Trusted(NamedTuple):
     ``name``: the name of the measure.
     ``rules``: the text of the rules that define the measure.
     ``sha256``: the digest of this text.
-    ``costs``: the costs by unit id, as stated. That no other unit costs less than 0 is taken on trust as
-    well.
+    ``costs``: the costs by unit id, as stated. That other units cost at least 0 is taken on trust, too.
     """
 
     name: str

@@ -164,8 +164,9 @@ class PlanCheck(Check):
     def idle(self) -> frozenset[int]:
         """The units that no plan executes: removed by a rule, or with an unreachable precondition.
 
-        The certificate lists the unreachable nodes under ``unreached``. Refuse the list if a node of it is
-        initial. Also refuse it if a unit that is not removed adds a listed node and needs none of the list.
+        The certificate lists the unreachable nodes under ``unreached``. Refuse the list if one of its nodes
+        is initial. Also refuse it if a unit could reach it: it is not removed, adds a listed node and needs
+        no listed node.
         """
         network = self.network
         stated_ids = self.certificate["unreached"]
@@ -324,10 +325,11 @@ class PlanCheck(Check):
     # --- the proof
 
     def _check_proof(self, proof: Any, least: Amount | None) -> None:
-        """Check for each objective that no plan as good by the earlier objectives costs less than ``least``.
+        """Check the proof of each objective: no plan costs less than ``least`` by it.
 
-        If ``least`` is ``None``, the proof is that no plan exists. All costs are then 0, and bounds have to
-        be above 0. If a rule allows no plan, ``least`` has to be ``None``, and the proof has to be empty.
+        Only plans that are as good by the earlier objectives are considered. If ``least`` is ``None``, the
+        proof is that no plan exists. All costs are then 0, and bounds have to be above 0. If a rule allows no
+        plan, ``least`` has to be ``None``, and the proof has to be empty.
         """
         proofs = read_list(proof)
         levels = range(max(1, len(self.objectives)))
@@ -500,7 +502,7 @@ class PlanCheck(Check):
         """Return whether a cut, a set of nodes, has a goal of a rule or a goal that needs more copies.
 
         A goal needs more copies if initial copies do not satisfy it. With the objective ``kitchen``, every
-        goal does that is not endless.
+        goal that is not endless needs more copies.
         """
         has_goal = any(
             goal in nodes and goal not in self.endless and self._is_lacking(goal, self.copies_wanted(goal))
@@ -604,9 +606,9 @@ class _FarkasCombination:
             self.levels.append((number, weight))
 
     def _weighted_rows(self, key: str, name_length: int = 1) -> Iterator[tuple[list[int], Amount]]:
-        """Yield the weighted conditions under a key: the numbers that name each, and its weight.
+        """Yield the weighted conditions under a key: a list of the numbers that name one, and its weight.
 
-        ``name_length`` is how many numbers name a condition.
+        ``name_length`` is the length of the list.
         """
         read = partial(self.check.read_weight, level=self.level)
         return self.check.read_weights(key, self.proof.get(key, []), read, name_length)
@@ -614,8 +616,8 @@ class _FarkasCombination:
     def _add_cut(self, cut: int, weight: Amount, holds: bool) -> None:
         """Add the condition of a cut: a member is executed, or a copy of an item in it is taken.
 
-        ``holds`` says whether the cut has a goal, or a precondition of the unit that it is before. If not,
-        the cut is refused. The cut is recorded as used.
+        ``holds`` says whether the cut has a goal or, for a cut before a unit, a precondition of this unit. If
+        not, the cut is refused. The cut is recorded as used.
         """
         check = self.check
         require(holds, f"cut {cut} holds neither a goal nor what the unit asks for")
