@@ -27,8 +27,9 @@ class Obstacle(NamedTuple):
 
     ``unit``: the position of the unit in the tree, from 0. ``None`` if every unit runs and a goal is missing.
     ``missing``: the input or goal that is not available.
-    ``cycle``: positions of units in a cycle that ``unit`` waits for. Each unit needs an output of the next, and
-    the last unit needs an output of the first. If it is empty, ``unit`` depends on an input that no unit makes.
+    ``cycle``: positions of units in a cycle that ``unit`` waits for. Each unit needs an output of the next,
+    and the last unit needs an output of the first. If it is empty, ``unit`` depends on an input that no unit
+    makes.
     ``used_up_by``: in a plan, the positions of the steps that used up copies of ``missing``.
     ``amount``: in a plan, the number of copies needed.
     """

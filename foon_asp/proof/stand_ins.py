@@ -31,8 +31,8 @@ class StandInClaim(NamedTuple):
     """The part of a certificate's claim that concerns stand-ins.
 
     ``by_dissimilarity``: ``True`` if there are no rules, and the first objective, if any, is dissimilarity.
-    ``bound``: the claimed lower bound on the dissimilarity of trees. ``None`` if the claim has no such bound, or
-    if the claim is that there is no tree.
+    ``bound``: the claimed lower bound on the dissimilarity of trees. ``None`` if the claim has no such bound,
+    or if the claim is that there is no tree.
     """
 
     by_dissimilarity: bool

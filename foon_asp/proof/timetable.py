@@ -110,9 +110,9 @@ class ToolNeed(NamedTuple):
     ``kept``: preconditions that are outputs, too: they stay as they are.
     ``changed``: preconditions that are no outputs.
     ``made``: outputs that the unit makes.
-    ``others``: inputs of the label that the container rule skips. If no input or output has the label, the tool
-    is only a container. The tuple then has one entry: an input in, on or at the tool, or ``None`` without such
-    an input.
+    ``others``: inputs of the label that the container rule skips. If no input or output has the label, the
+    tool is only a container. The tuple then has one entry: an input in, on or at the tool, or ``None`` if no
+    input is there.
     """
 
     kept: tuple[ObjectNode, ...]
