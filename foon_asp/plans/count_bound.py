@@ -1,8 +1,9 @@
 """Operator counting with the state equation: lower bounds on the cost of plans that consume objects.
 
-The counts of executions in a plan satisfy linear conditions (operator counting, Pommerening et al. 2014). Of
-every object, no more copies are consumed than exist, and the copies of targets remain. An executed action has
-achievers of its preconditions, if they are not initial. Landmarks of the delete relaxation hold as well.
+The counts of executions in a plan satisfy linear conditions (operator counting, Pommerening et al. 2014). No
+more copies of an object are consumed than exist, and the copies of targets remain. If an action is executed,
+each of its preconditions is initial or has an executed achiever. Landmarks of the delete relaxation hold as
+well.
 
 HiGHS solves the relaxations in floats. Bounds are recomputed in whole numbers, so that no float decides.
 """
@@ -525,7 +526,7 @@ class CountBound:
 
     @cached_property
     def _cutter(self) -> Cutter:
-        """The cutter of the targets in the delete relaxation, where initial copies cost nothing."""
+        """The :class:`Cutter` for the targets in the delete relaxation, where initial copies cost nothing."""
         flows = self._flows
         asks, targets = flows.lacking(priced=False)
         objects = {o for numbers in (*asks, *flows.adds, targets) for o in numbers}
@@ -535,7 +536,7 @@ class CountBound:
 
     @cached_property
     def _cutter_of_stock(self) -> Cutter:
-        """The cutter of the targets in the delete relaxation, where initial copies have a cost.
+        """The :class:`Cutter` for the targets in the delete relaxation, where initial copies have a cost.
 
         Its cuts have no initial object.
         """

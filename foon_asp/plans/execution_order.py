@@ -1,8 +1,8 @@
 """Orders for given counts of executions, as runs that repeat one action each.
 
 Whether each action can be executed as often as counted is a question about firing sequences of a Petri net. A
-run executes an action as often as possible. The search does not branch over runs if one leaves enough copies
-for all executions that wait.
+run executes an action as often as possible. If a run leaves enough copies for all executions that wait, the
+search tries no other run.
 """
 
 from collections import Counter

@@ -1,8 +1,8 @@
 """The state equation alone, strengthened by mixed-integer rounding: bounds, and counts of least cost.
 
-The rows are about counts only, without indicators. A row of the inverse basis of the relaxation has weights
-for the rows. The weighted sum of the rows, rounded, is a row that a fractional solution violates (Gomory
-1958; Nemhauser & Wolsey 1990).
+The rows are about counts only, without indicators. A row of the inverse basis of the relaxation gives each
+row of the program a weight. The weighted sum of rows is then rounded to a row that a fractional solution
+violates (Gomory 1958; Nemhauser & Wolsey 1990).
 
 If ``sum a[j] x[j] >= b`` holds for counts from 0, and ``f`` is the fractional part of ``b``, then ``sum
 (floor(a[j]) + min(1, fraction(a[j]) / f)) x[j] >= ceil(b)`` holds, too. This is valid for any weights from 0,
@@ -33,7 +33,7 @@ _Row = tuple[dict[int, int], int]
 
 
 class RoundedProgram:
-    """A linear program over counts whose rows are sums of conditions, to which rounded rows are added.
+    """A linear program over counts, whose rows are sums of conditions; rounded rows can be added.
 
     ``expired`` returns whether time is up; solving then raises :class:`Stopped`.
     """

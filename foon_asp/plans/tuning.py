@@ -1,4 +1,4 @@
-"""Numbers that steer the search for plans; they decide how fast something is proved, never what.
+"""Numbers that steer the search for plans: they change its time, and never make it prove a wrong result.
 
 Functions read :data:`PLANS` when they are called.
 """

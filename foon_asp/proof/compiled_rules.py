@@ -33,8 +33,8 @@ class CompiledRules:
     ``limits``: it keeps to each limit. A limit by ``max_sum`` of a :class:`Meaning` has the number of the
     constraint. Limits in ``limits`` of a meaning have numbers after those of all constraints.
     ``never``: this set is empty. It has the numbers of constraints that no tree satisfies.
-    ``barred``: it has no unit that one of these functions (:class:`Meaning`) returns. The keys are numbers of
-    constraints.
+    ``barred``: it has no unit that a function of this dictionary returns (:class:`Meaning`). The keys are the
+    numbers of the constraints.
 
     ``gives`` and ``needs`` map a unit to the new nodes that it makes and needs. ``steps`` maps a step to its
     preconditions and its node. ``makers`` maps a new node to the units and steps that make it.

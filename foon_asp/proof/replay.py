@@ -77,8 +77,8 @@ def replay_for(problem: Problem, plan: Iterable[FunctionalUnit]) -> Replay:
 def replayable_problem(problem: Problem, plan: Iterable[FunctionalUnit]) -> Problem:
     """Return a problem whose items are used up, so that :func:`replay_for` can replay a plan.
 
-    If this holds of ``problem``, return it as it is. Otherwise, return a copy in which items are used up, but
-    those with the label of an input of the plan stay.
+    If items of ``problem`` are used up, return it as it is. Otherwise, return a copy in which items are used
+    up. In the copy, items with the label of an input of the plan stay.
     """
     if problem.items is not None:
         return problem
@@ -107,7 +107,7 @@ def predecessors(replay: Replay) -> Iterator[set[int]]:
 
 
 def shared_readers(replay: Replay, is_free: Callable[[str], bool]) -> list[tuple[int, ...]]:
-    """Return, for each copy that two or more steps read, the positions of these steps, ascending.
+    """Return, for each copy that two or more steps read, the positions of its readers, ascending.
 
     To *read* a copy is to need it and not to use it up. Endless nodes, which the kitchen has and the stock
     does not count, are omitted. Nodes with a label that ``is_free`` accepts are omitted as well.

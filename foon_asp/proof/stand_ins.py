@@ -292,7 +292,8 @@ def _nodes_needed(
 ) -> set[int]:
     """Return the nodes, by id, that a tree may need and that are not free.
 
-    They are goals and, recursively, preconditions of their achievers, the network's stand-ins included.
+    They are goals and, recursively, preconditions of their achievers. Stand-ins of the network are achievers,
+    too.
     """
     needed = {goal for goal in goals if goal not in free}
     stack = list(needed)

@@ -1,8 +1,7 @@
 """Search for an order in which a tree with consumable items runs, each of its steps once.
 
-Whether each step of a multiset can be done once is a question about firing sequences of a Petri net. If more
-copies of a node are used up than exist in total, there is no such sequence. Otherwise, a depth-first search
-looks for one.
+The order is a firing sequence of a Petri net. If more copies of a node are used up than exist in total, there
+is no such order. Otherwise, a depth-first search looks for one.
 """
 
 from collections import Counter

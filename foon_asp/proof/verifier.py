@@ -397,8 +397,8 @@ class Check:
     def _landmark(self, cut: frozenset[int]) -> Iterator[int]:
         """Yield the members of a cut, given as a set of nodes; a member may be yielded twice.
 
-        They are the units and steps that make one of its nodes and need none, and its kitchen items. Refuse a
-        cut with a kitchen item unless the objective ``kitchen`` counts items.
+        They are the kitchen items in the cut, and the units and steps that make a node of the cut and need no
+        node of it. Refuse a cut with a kitchen item unless the objective ``kitchen`` counts items.
         """
         network, makers_by_rules = self.network, self.ruled.makers
         self.budget.spend(
