@@ -51,7 +51,7 @@ class CountBound:
     ``levels``: plans that are worse than the incumbent by any level are excluded.
     ``excluded_counts``: a plan is excluded if it executes all actions at least as often as one entry says.
     ``expired``: a function that returns whether time is up; the methods then raise :class:`Stopped`.
-    ``proved``: a lower bound on the cost of every plan by the first level; the methods raise it.
+    ``proved``: a lower bound on the cost of every plan by the first level; the methods increase it.
     """
 
     def __init__(
@@ -296,10 +296,11 @@ class CountBound:
     ) -> None:
         """Call ``is_better`` with all counts of cost up to ``max_cost``, by branch and bound.
 
-        If ``max_cost`` is ``None``, the cost has no limit. Counts that are worse than the incumbent are
-        omitted: by rounded costs of ``earlier_levels``, or by exact costs of ``levels``. Without
-        ``earlier_levels``, ``proved`` is raised. Raises :class:`BetterError` if ``is_better`` returns true,
-        and :class:`Stopped` after too many nodes.
+        If ``max_cost`` is ``None``, the cost has no limit. Counts are omitted if they are worse than the
+        incumbent by the rounded costs of a level in ``earlier_levels``. They are also omitted if they are
+        worse by the exact costs of a level in ``levels``. Without ``earlier_levels``, ``proved`` is
+        increased. Raises :class:`BetterError` if ``is_better`` returns true, and :class:`Stopped` after too
+        many nodes.
         """
         if (
             max_cost is not None
@@ -337,8 +338,8 @@ class CountBound:
 
         Plans that are worse than the incumbent by a level in ``earlier_levels`` are not considered. The
         search branches over counts, adds violated conditions, and gives up after ``equation_nodes`` nodes.
-        Without ``earlier_levels``, the first node raises ``proved``, and its rounded rows replace those known
-        so far.
+        Without ``earlier_levels``, the first node increases ``proved``, and its rounded rows replace those
+        known so far.
         """
         costs = {a: cost for a, cost in enumerate(measure.costs) if cost}
         caps = [max(max_cost, 0) // cost if cost else None for cost in measure.costs]

@@ -26,7 +26,7 @@ from foon_asp.problem.costs import Costs
 
 
 class _ManyError(Exception):
-    """Raised if too many counts have no order found, so that clingo has to search all counts at once."""
+    """Raised after too many searches for orders of counts; clingo then searches all counts at once."""
 
 
 class Counting:
@@ -262,7 +262,7 @@ class Counting:
         return run.exhausted and run.units is not None
 
     def _is_better(self, counts: Counts) -> bool:
-        """Return whether some order of counts is a better plan, and make this plan the incumbent.
+        """Return whether some order of counts is a better plan; if so, make it the incumbent.
 
         Raises :class:`_ManyError` if too many orders were sought since the proof began, unless amounts count.
         """

@@ -59,7 +59,7 @@ class RoundedProgram:
                     yield condition, *self.program.row_of(number)
 
     def strengthen(self, costs: Mapping[int, int], cutoff: float | None = None) -> Solved:
-        """Add rounded rows while they raise the cost; return the last solution of the relaxation.
+        """Add rounded rows while they increase the cost; return the last solution of the relaxation.
 
         The search for rows ends at a proved bound above ``cutoff``. Without a cutoff, no bound is proved, and
         the bound of the result is -infinity. Raises :class:`Stopped` if time is up.
@@ -219,7 +219,7 @@ class StateEquation(RoundedProgram):
         return self._indicators.get(action)
 
     def strengthen(self, costs: Mapping[int, int], cutoff: float | None = None) -> Solved:
-        """Add rounded rows while they raise the cost; return the last solution of the relaxation.
+        """Add rounded rows while they increase the cost; return the last solution of the relaxation.
 
         Parameters and result are those of :meth:`RoundedProgram.strengthen`. The first rows come from a
         smaller program that merges similar objects (:meth:`_round_alternatives`).

@@ -58,7 +58,7 @@ def read_amounts(value: Any, subject: Subject) -> dict[int, tuple[dict[int, int]
 
 
 def read_stays(value: Any, node_count: int) -> dict[str | int, bool]:
-    """Return the statements of a certificate whether a label, or a node by id, stays when used.
+    """Return, for labels and for node ids, whether a certificate states that they stay when used.
 
     ``value`` has to be a list of pairs: first sorted labels, then ascending ids below ``node_count``.
     """

@@ -83,8 +83,8 @@ def _check_user_rules(rule: Rule, unit_count: int) -> None:
 
 
 def trusted_claims(certificate: Mapping[str, Any]) -> Rule | None:
-    """Return the claims about user rules in a certificate, which are taken on trust, as a rule.
+    """Return the claims of a certificate about user rules, as one rule.
 
-    Return ``None`` if it has no such claims.
+    The claims are taken on trust. Return ``None`` if the certificate has no such claims.
     """
     return next((rule for rule in certificate.get("rules", ()) if rule["rule"] == OWN), None)

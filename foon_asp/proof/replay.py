@@ -201,7 +201,7 @@ class _Kitchen:
     def _has_copies(self, node: ObjectNode, amount: int) -> bool:
         """Return whether ``amount`` copies of a node exist.
 
-        Also raise the number of initial copies that the plan needs of the node, if its stock is finite.
+        Also increase the number of initial copies that the plan needs of the node, if its stock is finite.
         """
         if self._endless_copy(node):
             return True

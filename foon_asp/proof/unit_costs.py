@@ -43,7 +43,7 @@ class UnitCosts:
     ``objectives``: the objectives, most important first; empty if the claim is that there is no tree.
     ``measures``: the statements of the certificate about measures, by name.
     ``rates``: the success rate of each motion; empty unless an objective depends on rates.
-    ``fractional_rates``: these rates, without 0 and 1.
+    ``fractional_rates``: the set of success rates other than 0 and 1.
     ``prices``: the price of each unit, by id; empty unless ``price`` is an objective.
     ``trusted_costs``: the stated costs that were used so far, by measure and unit id.
     ``are_multiples``: a cached function from the index of an objective and a number. It returns whether all
