@@ -145,7 +145,7 @@ class PlanQuestion:
         return solve_lasting(lasting_problem, (Objective.UNITS,), settings).status is Status.INFEASIBLE
 
     def try_incumbent(self, plan: Plan) -> bool:
-        """Make a plan the incumbent if it is allowed and better, and report it; return whether it is so."""
+        """Make a plan the incumbent, and report it, if it is allowed and better; return whether it was."""
         costs = self.problem.costs(plan)
         if not self.allows(plan):
             return False

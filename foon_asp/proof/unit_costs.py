@@ -135,9 +135,9 @@ class UnitCosts:
     def _require_complete(
         self, values: Sequence[Fraction | None] | None, count: int, what: str
     ) -> list[Fraction]:
-        """Return ``count`` values, none of which is missing or below 0; ``what`` names them in errors.
+        """Return the values without ``None``; refuse fewer than ``count`` of them, and values below 0.
 
-        Refuse ``None`` in place of the values, values that are missing, and values below 0.
+        ``values`` is ``None`` if all are missing, which is refused. ``what`` names the values in errors.
         """
         require(values is not None, f"a claim needs {what}, but none are given")
         present = [value for value in values or () if value is not None]

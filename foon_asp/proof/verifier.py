@@ -343,7 +343,7 @@ class Check:
             return capacity
 
         def reduced_cost(member: int) -> Amount:
-            """Return what a member is allowed less the weights of its cuts."""
+            """Return ``allowed(member)`` less the sum of the weights of the member's cuts."""
             return self.arithmetic.sum([allowed(member), negate(load_of(member))])
 
         for member in dict.fromkeys(chain.from_iterable(loads.values())):

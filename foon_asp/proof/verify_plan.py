@@ -385,7 +385,8 @@ class PlanCheck(Check):
 
         Return ``None`` if no count is possible. ``level`` is the index of the objective. For counts from 1
         on, the cost is linear in the count. So only the count 0 and the least and greatest count from 1 on
-        are compared. Refuse a cost that falls without a greatest count.
+        are compared. If the cost falls with the count, and there is no greatest count, refuse the
+        certificate.
         """
         arithmetic = self.arithmetic
         low, high = node.min_counts.get(member, 0), self._max_count(member, level, node)

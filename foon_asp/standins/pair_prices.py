@@ -106,8 +106,8 @@ class NodePrices:
     def _name_price(self, edit: Edit, name: str) -> int | None:
         """Return the price of an edit that adds or removes a name; ``None`` if the table forbids it.
 
-        The name is a state or an ingredient. The table may have a price for this edit of this name.
-        Otherwise, the price of the edit counts.
+        The name is a state or an ingredient. If the table has a price for this name and edit, return this
+        price. Otherwise, return the price of the edit.
         """
         price = self._words.get((edit, name), -1)
         return self._edits[edit] if price == -1 else price
