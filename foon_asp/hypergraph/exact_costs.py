@@ -26,7 +26,7 @@ class ExactCosts:
     """The cost of each action as one integer; sums of costs compare lexicographically.
 
     Call the object with an action for its cost. The cost by an additive objective is scaled to an integer.
-    Then it is multiplied by more than the greatest sum of the objectives after it.
+    Then it is multiplied by a number greater than any sum of costs by the less important objectives.
 
     Where rates multiply, logarithms are added. Each factor of a coprime base of the rates has a logarithm
     rounded to forty digits, so equal products have equal sums. The attribute ``doubt`` is greater than the
@@ -61,8 +61,8 @@ class ExactCosts:
         """Return these costs with ``price * counts(unit)`` added to the cost of each unit.
 
         If the price is a fraction, all costs are multiplied by its denominator. Actions that take kitchen
-        items have no price. With a ``limit``, a search by these costs ends early: as soon as a lower bound
-        reaches the limit, or a tree costs less.
+        items have no price. With a ``limit``, a search by these costs ends as soon as a lower bound reaches
+        the limit, or a tree costs less than the limit.
         """
         units, costs = self._units, copy(self)
         numerator, costs._multiplier = Fraction(price).as_integer_ratio()
@@ -195,11 +195,11 @@ class ExactCosts:
         return [(objective, self._scaled_cost(objective, action)) for objective in self._objectives]
 
     def unscale(self, objective: Objective, figure: int) -> int | Fraction:
-        """Return a sum of scaled costs by an additive objective, ``figure``, in the unit of the objective."""
+        """Return ``figure``, a sum of scaled costs by an additive objective, in the unit of the objective."""
         return figure if objective.row.whole else Fraction(figure, self._denominators[objective])
 
     def is_logarithm(self, figure: int, product: Fraction) -> bool:
-        """Return whether a sum of rounded logarithms, ``figure``, is ``-log(product)`` up to rounding."""
+        """Return whether ``figure``, a sum of rounded logarithms, is ``-log(product)`` up to rounding."""
         return abs(figure - _logarithm(product.denominator) + _logarithm(product.numerator)) < _ROUNDED
 
     def rate(self, action: int) -> Fraction:

@@ -20,9 +20,10 @@ def extend_tree(
 ) -> set[int] | None:
     """Return the actions of a tree for the goals, together with the actions of an extension.
 
-    The extension follows h_add; actions of the tree cost nothing in it. It is looked for among the actions
-    nearest to the required sets, and then in a restricted subproblem of at most ``max_actions`` actions. The
-    result may have redundant actions. Returns ``None`` if no extension is found.
+    The extension gives the tree a unit of each required set. It follows h_add, where actions of the tree cost
+    nothing. It is first looked for among the actions nearest to the required sets. Then it is looked for in a
+    restricted subproblem of at most ``max_actions`` actions. The result may have redundant actions. Returns
+    ``None`` if no extension is found.
     """
     required_graph = _graph_of_required(graph)
     remaining_cost = _cost_without(tree, cost)

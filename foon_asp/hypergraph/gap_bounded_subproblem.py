@@ -30,9 +30,9 @@ class Subproblem:
     redundant: bool
 
     def landmarks(self) -> list[frozenset[int]]:
-        """Return disjunctive landmarks, as sets of unit ids: those of the cuts, and the required sets.
+        """Return disjunctive landmarks, as sets of unit ids: landmarks of the cuts, then the required sets.
 
-        Landmarks of cuts with an action that takes a kitchen item are left out.
+        A landmark is left out if it has an action that takes a kitchen item.
         """
         graph, restriction = self.graph, self.problem.restriction
         landmarks = [frozenset(cut.members) for cut in self.cuts.cuts if max(cut.members) < graph.units]
@@ -42,7 +42,10 @@ class Subproblem:
         return landmarks
 
     def achievers_for(self, units: Iterable[int]) -> set[int]:
-        """Return the achievers of the goals and of the preconditions of some units, except kitchen items."""
+        """Return the achievers of the goals and of some units' preconditions.
+
+        Kitchen items among the preconditions are skipped.
+        """
         graph, kitchen = self.graph, self.problem.kitchen
         needed = {o for unit in units for o in graph.needs[unit] if o not in kitchen}
         return {achiever for o in needed.union(graph.goals) for achiever in graph.makers[o]}
@@ -98,7 +101,7 @@ class Subproblem:
         return tree | {self.graph.units + o for o in needed & self.problem.kitchen}
 
     def nearest_units(self, min_units: int) -> frozenset[int]:
-        """Return the units among the ``remaining`` actions nearest to the goals by reduced cost.
+        """Return units among the ``remaining`` actions: those nearest to the goals by reduced cost.
 
         The search ends when ``min_units`` actions are found. These may include actions that take kitchen
         items.
@@ -116,7 +119,8 @@ class Subproblem:
     def all_units(self) -> frozenset[int]:
         """Return all units that a tree of any cost can have.
 
-        They are the units that can run. Unless trees may be redundant, they also have to lead to a goal.
+        They are the units that can run. If trees may not be redundant, units that lead to no goal are left
+        out.
         """
         if self.redundant:
             return self._units(self._runnable_actions(self._all_actions()))
@@ -132,10 +136,10 @@ class Subproblem:
         """Return a superset of the actions of trees that cost up to ``limit``.
 
         Let the gap be ``limit`` minus the bound of the cuts. The reduced costs of such a tree add up to at
-        most the gap. So an action is excluded if its derivation has a greater reduced cost. Unless trees may
-        be redundant, the path from the action to a goal is added to the derivation. Then new cuts are found
-        among the remaining actions, as long as many are excluded. If time is up, the superset is larger. The
-        result is empty if cuts prove that there is no such tree.
+        most the gap. So an action is excluded if its derivation has a greater reduced cost. If trees may not
+        be redundant, the path from the action to a goal is added to the derivation. As long as this excludes
+        many actions, it is repeated with new cuts over the remaining ones. If time is up, the superset is
+        larger. The result is empty if cuts prove that there is no such tree.
 
         Raises ``KeyboardInterrupt`` if the search for cuts is interrupted.
         """

@@ -42,7 +42,7 @@ NO_EVIDENCE = Evidence()
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Gap:
-    """The state of a question between two stages; each stage makes a smaller gap of it.
+    """The state of a question between two stages. Each stage turns it into a smaller gap.
 
     ``incumbent``: the actions of the best tree so far.
     ``lower_bound``: a lower bound on the cost of every tree, in the units of :class:`ExactCosts`.

@@ -15,8 +15,8 @@ if TYPE_CHECKING:  # few questions need it
 def irredundant_subset(graph: GoalGraph, tree: Collection[int], cost: Callable[[int], int]) -> set[int]:
     """Return an irredundant subset of a tree, by removing redundant actions, expensive ones first.
 
-    All actions of the tree have to be able to run, and together they have to reach the goals. Actions that
-    best achievers by h_add do not use are removed first, all at once.
+    All actions of the tree have to be able to run, and together they have to reach the goals. Best achievers
+    by h_add are followed from the goals. The actions that this does not use are removed first, all at once.
     """
     support = Support(graph, tree, cost)
     waiting = [(-cost(action), action) for action in support.actions]
@@ -42,14 +42,14 @@ def trees_by_lp_values(
 ) -> Iterator[set[int]]:
     """Yield an irredundant tree that follows h_add and one that follows h_max, both guided by LP values.
 
-    For the h-values, the cost of an action is multiplied by 1 minus its LP value. Each action has to have
-    one, unless it is in ``without``. The trees have no action of ``without``. Yields nothing if there is no
-    such tree.
+    For the h-values, the cost of an action is multiplied by 1 minus its LP value. Each action except those in
+    ``without`` has to have an LP value. The trees have no action of ``without``. Yields nothing if there is
+    no such tree.
     """
     allowed = [a for a in actions if a not in without]
 
     def price_by_lp_value(action: int) -> int:
-        """Return about 1000 times the cost of an action times 1 minus its LP value."""
+        """Return about ``1000 * cost * (1 - LP value)`` for an action."""
         return 1 + _scaled_cost(cost(action), 1 - min(1.0, lp_values[action]))
 
     for h_add in (True, False):
@@ -75,7 +75,7 @@ def trees_by_partition(
     """
 
     def price_by_lp_value(action: int) -> int:
-        """Return about 1000 times the cost of an action times 1 minus its LP value."""
+        """Return about ``1000 * cost * (1 - LP value)`` for an action."""
         return 1 + _scaled_cost(cost(action), 1 - min(1.0, partition.lp_values[action]))
 
     def price_by_reduced_cost(action: int) -> int:

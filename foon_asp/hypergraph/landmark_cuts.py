@@ -85,7 +85,7 @@ class _Level:
 
 
 class _Target:
-    """A target with a stack of levels, of which the lowest has the target alone.
+    """A target with a stack of levels. The lowest level has only the target.
 
     Objects of a level are made before objects of the level below. ``outer_zones`` are the objects in the
     zones of all levels except the topmost.
@@ -147,8 +147,7 @@ def landmark_cuts(
     ctrl-C, nothing is raised, and the result is ``interrupted``.
 
     Targets take turns, beginning with the greatest h-value. So the cuts of one target do not use up the costs
-    that others need. The set of objects of reduced cost 0 only grows, so the time is linear in the parts of
-    the graph that cuts touch.
+    that other targets need. The time is linear in the parts of the graph that cuts touch.
     """
     search = _Search(graph, allowed, cost, h_values)
     queue = deque(_Target(o) for o in sorted(targets, key=search.h_value_key, reverse=True))
@@ -210,7 +209,7 @@ class _Search:
         """Find the next cut of a level, record it, and subtract its weight from reduced costs; return it.
 
         Return ``None`` if no action crosses the zone, so that the target cannot be reached. ``outer_zones``
-        are those of the :class:`_Target`.
+        are explained at :class:`_Target`.
         """
         new_objects = self._grow_zone(level, outer_zones)
         while new_objects is None:

@@ -23,8 +23,8 @@ _DIGITS = 60  # of a logarithm, at first
 class Lexicographic:
     """An order on cost vectors.
 
-    ``levels``: for each level, the tuple of its rates; ``None`` for a level that counts. Rates lie strictly
-    between 0 and 1.
+    ``levels``: for each level, the tuple of the rates that it multiplies; ``None`` for a level that adds up
+    counts. Rates lie strictly between 0 and 1.
     ``width``: the number of coordinates of a vector.
     """
 

@@ -143,9 +143,9 @@ class Prover:
     def relax(self, derivation: Iterable[int]) -> tuple[Packing, Vector] | None:
         """Return the optimal cost partition of the relaxation, before any branching, and its lower bound.
 
-        The relaxation may exceed limits, at a cost far above that of ``derivation``. This argument has no
-        other effect. The lower bound is rounded up. Return ``None`` if the targets cannot be reached, time is
-        up, or exact arithmetic fails.
+        The relaxation may exceed limits at a high cost, for which the cost of ``derivation`` is the measure.
+        ``derivation`` has no other effect. The lower bound is rounded up. Return ``None`` if the targets
+        cannot be reached, time is up, or exact arithmetic fails.
         """
         nothing: frozenset[int] = frozenset()
         barred = self._barred_actions(nothing, self._forbidden).values()
@@ -257,7 +257,7 @@ class Prover:
         )
 
     def round_up(self, bound: Vector) -> tuple[Vector, int | None]:
-        """Round up a bound at its first coordinate that is no multiple of its number in ``multiples``.
+        """Round up the first coordinate of a bound that is no multiple of its number in ``multiples``.
 
         Later coordinates become 0. Returns the bound, and the index of the coordinate that was rounded. The
         index is ``None`` if none was rounded.
@@ -388,8 +388,8 @@ class Prover:
         """Return a proof by reduced-cost fixing.
 
         A derivation with an action costs at least the sum of the weights of ``packing`` plus the reduced cost
-        of the action. For derivations without the actions above the cutoff, ``others`` proves the goal. If
-        the cuts of that proof have no such action in their landmarks, it is returned as it is.
+        of the action. For derivations without the actions above the cutoff, ``others`` proves the goal. If no
+        landmark of the proof by ``others`` has such an action, that proof is returned as it is.
 
         Return ``None`` if too few actions are above the cutoff, or ``step`` is 0.
         """
@@ -421,7 +421,7 @@ class Prover:
     def _prove_by_search(
         self, cutter: Cutter, goal: Vector, known_cuts: Sequence[Cut], step: Fraction
     ) -> Proof | None:
-        """Return a proof by :func:`prove_by_branching`. Return ``None`` if it has none, or ``step`` is 0.
+        """Return a proof by :func:`prove_by_branching`; ``None`` if it finds none, or ``step`` is 0.
 
         The cuts of the proof are widened, so that they are valid for all actions.
         """
@@ -622,7 +622,7 @@ class _NodeRelaxation:
     def _separate(self) -> bool:
         """Add cuts with disjoint landmarks that the last LP solution violates.
 
-        Return whether it violates any. At most ``tuning.RELAXATION.cuts`` cuts are added at a call.
+        Return whether there are such cuts. At most ``tuning.RELAXATION.cuts`` cuts are added at a call.
         """
         import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
 

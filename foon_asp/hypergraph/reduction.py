@@ -94,7 +94,7 @@ class Listener:
 
 
 class Bounds(Listener):
-    """Observer that passes on bounds but no trees, since these may break rules."""
+    """Observer that passes on bounds but no trees, since the trees may break rules."""
 
     def __init__(self, listener: Listener) -> None:
         self._listener = listener
@@ -500,9 +500,10 @@ class _Presolve:
         self.run_guarded(run_from_shared_gap)
 
     def extend_or_run(self) -> None:
-        """Run all rounds; with required sets, first try to extend trees for the goals alone.
+        """Extend trees for the goals alone, so that they have a unit of each required set, or run all rounds.
 
-        This is tried only with the reduction ``dear``. If it leads to a gap, the rounds are not run again.
+        The rounds are run if there are no required sets, the task lacks the reduction ``dear``, or extending
+        leads to no gap.
         """
         restriction = self.task.problem.restriction
         if restriction is not None and restriction.required and Reduction.DEAR in self.task.reductions:

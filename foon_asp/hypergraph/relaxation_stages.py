@@ -74,10 +74,10 @@ def _starting_cuts(gap: Gap) -> tuple[frozenset[int], ...]:
 def follow_solution(task: Task, gap: Gap, partition: CostPartition, looks: int) -> Stage:
     """Look for better trees that follow an LP solution, then apply its cost partition.
 
-    If the LP solution and the trees use few actions, branch and bound over these looks for better trees.
-    Otherwise, a perturbation search does. Neither is run if the bound of the partition reaches the cost of
-    the incumbent. ``looks`` is the budget: how often each candidate may be looked at. Yields each gap that it
-    reaches.
+    Better trees are looked for in one of two ways. If the LP solution and the trees that follow it use few
+    actions, branch and bound over the used actions is run. Otherwise, a perturbation search is run. Neither
+    is run if the bound of the partition reaches the cost of the incumbent. ``looks`` is the budget: how often
+    each candidate may be looked at. Yields each gap that it reaches.
     """
     costs, graph = task.costs, task.graph
     assert costs is not None

@@ -68,8 +68,9 @@ class SolvedGoals:
     def _tree_from_solved(self, task: Task) -> frozenset[int]:
         """Return the best tree found for the only goal of a question.
 
-        Each tree is an achiever of the goal together with trees of its preconditions. The latter are known
-        from solved questions, or follow h_add. Of the cheapest unions, redundant actions are removed.
+        For each achiever of the goal, a union is formed: the achiever and trees of its preconditions. The
+        trees of preconditions are known from solved questions, or follow h_add. Redundant actions are removed
+        from the cheapest unions.
         """
         graph, costs, derivations, trees = task.graph, task.costs, self._derivations, list[set[int]]()
         assert costs is not None
@@ -106,9 +107,9 @@ class SolvedGoals:
     def record(self, task: Task, gap: Gap | None) -> None:
         """Store the tree of a proved gap; other gaps, and ``None``, are ignored.
 
-        If the linear relaxation was needed to prove it, landmarks are shared from now on. They are never
-        shared if costs are rounded, or if this first such question is not reduced by both ``bounds`` and
-        ``dear``.
+        Landmarks are shared from the first gap on that needed the linear relaxation for its proof. They are
+        never shared if costs are rounded, or if the question of this gap is not reduced by both ``bounds``
+        and ``dear``.
         """
         if gap is None or not gap.proved:
             return

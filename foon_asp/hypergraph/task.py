@@ -57,7 +57,7 @@ class Task:
         return Reduction.BOUNDS in self.reductions and self.incumbent_cost(gap) >= self.below
 
     def cutoff(self, gap: Gap) -> int:
-        """Return the greatest cost of trees that are still wanted, plus the doubt of costs.
+        """Return the greatest cost of trees that are still wanted, plus :attr:`ExactCosts.doubt`.
 
         With the reduction ``bounds``, trees that cost as much as the incumbent are not wanted.
         """
