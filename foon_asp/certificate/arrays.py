@@ -25,9 +25,9 @@ class Arrays:
     below 1. Without objectives, all costs are 0.
 
     Covered constraints may add nodes and steps (:class:`~foon_asp.proof.compiled_rules.CompiledRules`,
-    ``ruled``). They come last; a step is an action of cost 0. ``forbidden`` are the units that constraints
-    remove, and ``limits`` are the limits of constraints. Limits by user rules (*own* limits) may be found
-    later and added.
+    ``ruled``). Added nodes and steps have the last numbers. A step is an action of cost 0. ``forbidden`` are
+    the units that constraints remove, and ``limits`` are the limits of constraints. Limits by user rules
+    (*own* limits) may be found later and added.
     """
 
     def __init__(self, problem: Problem, objectives: Sequence[Objective], covered: Coverage) -> None:
@@ -173,7 +173,7 @@ class Arrays:
         """Return the case split of an answer of a search, with actions as numbered here.
 
         In an answer, the action that takes an item has the number of units plus the item's id. A split by an
-        action that does not exist here is replaced by ``None``, no split.
+        action that does not exist here is replaced by ``None``, which means no split.
         """
         if cases is None:
             return None

@@ -274,7 +274,7 @@ class _PlanQuestion:
     def rounded_number(self, condition: Rounded) -> int:
         """Return the number of a rounded condition in the certificate.
 
-        A new condition is added, after the rounded conditions that it is a sum of.
+        A new condition is added to the certificate, after the rounded conditions that it adds up.
         """
         number = next(
             (i for i, earlier_condition in enumerate(self._rounded) if earlier_condition is condition), None
@@ -314,15 +314,15 @@ class _PlanQuestion:
         return self._units[action]
 
     def limit_and_scale(self, number: int) -> tuple[int, int]:
-        """Return the number in the certificate of a limit of the prover, and the scale of its integers."""
+        """Return the certificate's number of a limit of the prover, and the scale of its integers."""
         rule_number, _, scale = self._limits[number]
         return rule_number, scale
 
     def _unreachable_nodes(self) -> list[int]:
-        """Return unreachable nodes, ascending, which prove that no plan executes certain irrelevant units.
+        """Return unreachable nodes, ascending, which show that certain irrelevant units cannot be executed.
 
-        These units could cross a cut or add a balanced node, or they add one of the returned nodes. Each of
-        them has one of the returned nodes as a precondition.
+        The proofs look at nodes of cuts and balanced nodes. Each irrelevant unit that adds such a node has a
+        returned node as a precondition. So does each unit that adds a returned node.
         """
         flows, units, removed = self._problem.flows, set(self._units), self._ruled.removed
         proof_nodes = {o for cut in self._cuts for o in cut} | self._balanced

@@ -158,10 +158,9 @@ def _check_by_engine(engine: Engine, claim: ClaimedAnswer, seconds: float) -> tu
 def agreed_objectives(outcome: Outcome, answer: EngineAnswer) -> tuple[Objective, ...]:
     """Return the objectives by which an engine finds our tree optimal, the most important first.
 
-    Costs are computed anew from the units, as rational numbers. An engine that works in floats may call a
-    tree optimal although it costs more than ours by less than the engine's precision. Then neither this
-    objective nor any less important one is in the result. The result is empty if both say that there is no
-    tree.
+    Costs are computed anew from the units, as rational numbers. The engine's tree may cost more than ours by
+    an objective, but by less than the engine's precision. Then neither this objective nor a less important
+    one is in the result. The result is empty if we and the engine say that there is no tree.
 
     Raises :class:`DisagreementError` if the two answers contradict each other, or the engine's tree does not
     execute. Raises :class:`NotCheckedError` if the engine found no answer in time, or its precision is too

@@ -52,8 +52,8 @@ def check_with_bare_clingo(claim: ClaimedAnswer, seconds: float) -> None:
     """Have bare clingo answer the question of a claim, and raise an exception unless it agrees.
 
     Raises :class:`DisagreementError` if the two answers contradict each other. Raises
-    :class:`NotCheckedError` if clingo does not finish within ``seconds``, or its answer implies nothing about
-    ours.
+    :class:`NotCheckedError` if clingo does not finish within ``seconds``, or if clingo's answer implies
+    nothing about ours.
     """
     outcome = claim.outcome
     program = bare_program(outcome.problem, outcome.objectives, claim.settings, claim.soft)
@@ -255,8 +255,8 @@ class _Comparison:
         """Return whether the costs in an answer of clingo are the sums of the costs of its units.
 
         A replaced encoding may add up other numbers. If no encoding is replaced, other numbers raise
-        :class:`DisagreementError`. The penalty of soft constraints is not compared. Raises as
-        :meth:`_executable_order` if the answer does not execute.
+        :class:`DisagreementError`. The penalty of soft constraints is not compared. If the answer does not
+        execute, raises what :meth:`_executable_order` raises.
         """
         costs = self.problem.costs(self._executable_order(answer))
         figures = [
@@ -435,9 +435,9 @@ def tree_weight_bound(
     ``our_costs``: the costs of our units.
     ``multiplies``: whether the costs are rates, which multiply.
 
-    Let L(c) = c for a cost, L(p) = -ln p for a rate, and S the maximum of w / L(c) over all units with a
-    cost. Then w <= S * L(c) for every unit. So the weights of any tree T add up to at most S * L(T), where
-    L(T) is the sum over its units. A tree as good as ours has an L(T) of at most that of our tree.
+    Let w be the weight of a unit. Let L be its cost or, for a rate p, -ln p. Let S be the maximum of w / L
+    over all units with L > 0. Then w <= S * L for every unit. So the weights of a tree add up to at most S
+    times the sum of L over its units. For a tree as good as ours, this sum is at most that of our tree.
 
     Raises :class:`NotCheckedError` for a unit that has a weight but no cost, since no such S exists then.
     Also raises it for a rate of 0, which has no logarithm.

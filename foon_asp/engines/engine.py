@@ -45,7 +45,7 @@ class EngineAnswer(NamedTuple):
 
 
 class Solve(Protocol):
-    """The function of an engine, ours or that of another package (docs/entry-points.md)."""
+    """The function by which an engine, built-in or of another package, solves (docs/entry-points.md)."""
 
     def __call__(
         self,
@@ -99,7 +99,7 @@ def difference_error(
     answer: EngineAnswer,
     more_is_better: bool = False,
 ) -> DisagreementError:
-    """Return the error that two trees, both claimed to be optimal, have different costs by ``measure``.
+    """Return the error for two trees that are both called optimal but differ in cost by ``measure``.
 
     ``ours`` and ``theirs`` are the costs of our tree and of the engine's tree. If the engine's tree is
     better, the error says that the bug is ours. The better cost is the smaller one or, with

@@ -137,9 +137,9 @@ class Subproblem:
 
         Let the gap be ``limit`` minus the bound of the cuts. The reduced costs of such a tree add up to at
         most the gap. So an action is excluded if its derivation has a greater reduced cost. If trees may not
-        be redundant, the path from the action to a goal is added to the derivation. As long as this excludes
-        many actions, it is repeated with new cuts over the remaining ones. If time is up, the superset is
-        larger. The result is empty if cuts prove that there is no such tree.
+        be redundant, the path from the action to a goal is added to the derivation. As long as many actions
+        are excluded, new cuts are found over the remaining ones. If time is up, the superset is larger. The
+        result is empty if cuts prove that there is no such tree.
 
         Raises ``KeyboardInterrupt`` if the search for cuts is interrupted.
         """

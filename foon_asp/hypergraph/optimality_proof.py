@@ -143,9 +143,9 @@ class Prover:
     def relax(self, derivation: Iterable[int]) -> tuple[Packing, Vector] | None:
         """Return the optimal cost partition of the relaxation, before any branching, and its lower bound.
 
-        The relaxation may exceed limits at a high cost, for which the cost of ``derivation`` is the measure.
-        ``derivation`` has no other effect. The lower bound is rounded up. Return ``None`` if the targets
-        cannot be reached, time is up, or exact arithmetic fails.
+        The relaxation may exceed limits. An excess costs 1000 times as much as ``derivation``, which has no
+        other effect. The lower bound is rounded up. Return ``None`` if the targets cannot be reached, time is
+        up, or exact arithmetic fails.
         """
         nothing: frozenset[int] = frozenset()
         barred = self._barred_actions(nothing, self._forbidden).values()

@@ -107,9 +107,8 @@ class SolvedGoals:
     def record(self, task: Task, gap: Gap | None) -> None:
         """Store the tree of a proved gap; other gaps, and ``None``, are ignored.
 
-        Landmarks are shared from the first gap on that needed the linear relaxation for its proof. They are
-        never shared if costs are rounded, or if the question of this gap is not reduced by both ``bounds``
-        and ``dear``.
+        Landmarks are shared as soon as a proof needed the linear relaxation. If this first question has
+        rounded costs, or is not reduced by both ``bounds`` and ``dear``, landmarks are never shared.
         """
         if gap is None or not gap.proved:
             return

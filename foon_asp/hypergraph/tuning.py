@@ -54,9 +54,9 @@ class CutTuning(NamedTuple):
 
     ``guided_cuts``: the number of cuts after which the h-values that guide cuts are computed anew. If there
     are more targets than that, h-values are computed after as many cuts as there are targets.
-    ``guides``: a divisor. At least as many cuts are found between two computations of h-values as there are
-    objects, divided by it. Each computation looks at all objects, so computing them more often would take
-    quadratic time (``benchmarks/shapes.py``, grid by kitchen).
+    ``guides``: at least ``objects / guides`` cuts are found between two computations of h-values. Each
+    computation looks at all objects, so computing them more often would take quadratic time
+    (``benchmarks/shapes.py``, grid by kitchen).
     ``lazy_depth``: the greatest depth of the recursion of lazy h_max.
     ``lazy_looks``: how many actions one lazy h_max test looks at in all.
     """
