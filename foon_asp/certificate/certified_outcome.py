@@ -29,7 +29,7 @@ def certify_outcome(
 
     If the certificate proves only a bound, or takes user rules on trust, the answer is not marked. Otherwise,
     the objectives that the certificate proves are marked as certified. If it proves the whole claim, the kind
-    of proof of the answer becomes ``certificate``, and a plan that was found at a limit becomes optimal.
+    of proof of the answer becomes ``certificate``. Then a plan that was found at a limit becomes optimal.
 
     User rules are taken on trust only if that proves more than a bound on trees. In all cases,
     ``outcome.seconds["certificate"]`` becomes the time of the search for certificates.

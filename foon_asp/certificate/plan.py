@@ -65,8 +65,8 @@ def certify_plan(
 
     ``plan`` lists unit ids in the order of execution. ``expired`` returns whether time is up. Return ``None``
     if nothing is proved before that, or if the certificate is beyond the limits of the verifier. An objective
-    that needs rates is not proved if a rate is 0. If units have rates that differ from those of their
-    motions, return ``None`` if an objective needs rates or rules are covered.
+    that needs rates is not proved if a rate is 0. Some units may have rates that differ from the rates of
+    their motions. Then return ``None`` if an objective needs rates or rules are covered.
     """
     if problem.own_rates and (covered.rules or any(o.row.needs is OptionalData.RATES for o in objectives)):
         return None
@@ -97,8 +97,8 @@ def certify_no_plan(
 ) -> Certificate | None:
     """Return a certificate that there is no plan; ``None`` if that is not proved before time is up.
 
-    Also return ``None`` if the certificate is beyond the limits of the verifier, or if rules are covered and
-    units have rates that differ from those of their motions.
+    Also return ``None`` if the certificate is beyond the limits of the verifier. The result is ``None``, too,
+    if rules are covered and units have rates that differ from the rates of their motions.
     """
     if covered.rules and problem.own_rates:
         return None
@@ -149,10 +149,10 @@ class _PlanQuestion:
     ) -> tuple[Any, Vector | None] | None:
         """Prove that no plan costs less than the plan in hand by an objective, or prove a bound.
 
-        Only plans that are as good by ``earlier_objectives`` count. Return the JSON of the proof, and its
-        bound if this is below the cost of the plan in hand, else ``None``. Such a bound is only proved for
-        the first objective. If the plan in hand costs nothing, the proof is empty. Return ``None`` if nothing
-        is proved.
+        Only plans that are as good by ``earlier_objectives`` count. Return a pair: the JSON of the proof, and
+        the proved bound. The bound is ``None`` if no plan costs less than the plan in hand. For objectives
+        after the first, nothing less is proved. If the plan in hand costs nothing, the proof is empty. Return
+        ``None`` instead of a pair if nothing is proved.
         """
         earlier_levels = [self._level(earlier_objective) for earlier_objective in earlier_objectives]
         if any(level is None for level in earlier_levels):
@@ -346,7 +346,7 @@ class _PlanQuestion:
         return [unit for unit in self._problem.makers[o] if o in self._problem.flows[unit].adds]
 
     def _amounts_json(self) -> list[list[Any]]:
-        """Return the JSON of the amounts of all units of the data: a unit, its inputs and its outputs.
+        """Return the JSON of stated amounts: for each unit of the data, a list of its id, inputs and outputs.
 
         Inputs and outputs are pairs of a node id and an amount. Units without stated amounts are left out.
         """

@@ -83,8 +83,8 @@ def cross_check(
     all later ones say ``interrupted``.
 
     Raises :class:`DisagreementError` for the first engine whose answer differs. For an engine of another
-    package, this error is raised only if the engine's tree is valid and better than ours. Otherwise that
-    engine is wrong, and its claim is in :attr:`Check.refuted`.
+    package, it is raised only if the engine's tree is valid and better than ours. Otherwise, the engine is
+    wrong, and its claim is in :attr:`Check.refuted`.
     """
     if seconds is None:
         remaining = claim.settings.effective_deadline.remaining_seconds
@@ -127,7 +127,7 @@ def cross_check(
 def _check_by_clingo(claim: ClaimedAnswer, seconds: float) -> tuple[Objective, ...]:
     """Return the objectives by which bare clingo agrees; an empty tuple if there is no tree.
 
-    Raises as :func:`check_with_bare_clingo` or, for plans, :func:`check_plan_with_bare_clingo`.
+    Raises what :func:`check_with_bare_clingo` or, for plans, :func:`check_plan_with_bare_clingo` raises.
     """
     if claim.outcome.problem.items is not None:
         return bare_plans.check_plan_with_bare_clingo(claim, seconds)

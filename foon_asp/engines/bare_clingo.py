@@ -107,8 +107,8 @@ class Clingo:
         ``extra_facts``: the facts ``_same_rate`` and ``_most_alike`` of ``second_opinion.lp``, which say
         which units have the same cost by the rounded objective.
 
-        Two answers are of one kind if they have equally many units of each such cost. Raises
-        :class:`NotCheckedError` if there are more than ``MAX_KINDS`` kinds, or clingo does not finish.
+        Two answers are of one kind if they have equally many units of each cost by the rounded objective.
+        Raises :class:`NotCheckedError` if there are more than ``MAX_KINDS`` kinds, or clingo does not finish.
         """
         mode = ",".join(["--opt-mode=enum", *map(str, bounds)])
         options = (mode, f"--models={MAX_KINDS + 1}", "--project=project")
@@ -186,8 +186,8 @@ def _read_witness(witness: dict[str, Any]) -> ClingoAnswer:
 class _Comparison:
     """The comparison of our answer with clingo's.
 
-    ``weights``: for each objective with fractions, the rounded cost of each unit in the facts, by the public
-    number of the unit. They are read from the facts at construction.
+    ``weights``: for each objective with fractions, the rounded costs of units by public number. They are read
+    from the facts at construction.
     """
 
     def __init__(self, claim: ClaimedAnswer, program: BareProgram, clingo: Clingo) -> None:
@@ -235,8 +235,9 @@ class _Comparison:
     def _check_our_tree(self, theirs: ClingoAnswer) -> ClingoAnswer:
         """Have clingo add up the costs of our tree; return our tree as an answer of clingo with these costs.
 
-        Raises :class:`DisagreementError` if our tree does not execute, its claimed costs or penalty are
-        wrong, or it breaks rules in clingo. ``theirs`` is clingo's own answer; the errors contain it.
+        Raises :class:`DisagreementError` if our tree does not execute or breaks rules in clingo. Also raises
+        it if the claimed costs or penalty are wrong. ``theirs`` is clingo's own answer; the errors contain
+        it.
         """
         units = check_tree(self.problem, EngineAnswer("foon-asp", self.levels, self.outcome.units, True))
         if self.problem.costs(units) != self.outcome.costs:
@@ -429,7 +430,7 @@ def _count_each(classes: Iterable[Fraction], figures: Iterable[Fraction]) -> lis
 def tree_weight_bound(
     weights: Collection[tuple[Fraction, int]], our_costs: Collection[Fraction], multiplies: bool = True
 ) -> int:
-    """Return an upper bound on the sum of the weights of any tree that is at least as good as ours.
+    """Return an upper bound on the sum of weights of trees that are at least as good as ours.
 
     ``weights``: the distinct pairs of a unit's cost and its weight, which may be rounded in any way.
     ``our_costs``: the costs of our units.

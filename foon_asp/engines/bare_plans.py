@@ -25,8 +25,12 @@ def check_plan_with_bare_clingo(claim: ClaimedAnswer, seconds: float) -> tuple[O
 
     Raises :class:`DisagreementError` if clingo says that our plan breaks rules, costs another amount, or is
     not optimal. Also raises it if clingo's plan does not run. Raises :class:`NotCheckedError` in these cases:
-    we have no optimal plan, nodes have amounts, the first objective has fractions, nothing bounds the number
-    of executions of a unit, or clingo does not finish within ``seconds``.
+
+    - We have no optimal plan.
+    - Nodes have amounts.
+    - The first objective has fractions.
+    - Nothing bounds the number of executions of a unit.
+    - clingo does not finish within ``seconds``.
     """
     outcome, problem = claim.outcome, claim.outcome.problem
     if outcome.units is None or outcome.costs is None or outcome.status is not Status.OPTIMAL:

@@ -164,14 +164,14 @@ class Branching:
         return self.effort <= 0 or expired()
 
     def _is_above_cutoff(self, bound: int) -> bool:
-        """Return whether no derivation whose cost is at least ``bound``, in parts, beats the incumbent."""
+        """Return whether a lower bound on costs, in parts, exceeds the greatest cost that is still wanted."""
         return bound > self._cutoff() * PARTS
 
     def _cutoff(self) -> int:
         """Return the greatest cost that a derivation better than the incumbent can have.
 
-        Without an incumbent, ``total`` takes the place of its cost. All costs are multiples of their common
-        divisor, and so is the cutoff.
+        Without an incumbent, ``total`` takes the place of its cost. The cutoff is a multiple of the common
+        divisor of all costs.
         """
         return (self._total - 1) // self._common_divisor * self._common_divisor
 
@@ -267,8 +267,8 @@ class Branching:
         """Round an LP solution to a derivation, record the derivation, and return its columns.
 
         The derivation has the used actions and those of LP value above 1/2, without forbidden actions. It
-        becomes the incumbent if it is better. If it does not reach all targets, a cut that it violates is
-        added to the relaxation, and the empty set is returned.
+        becomes the incumbent if it is better. If the actions do not reach all targets, the empty set is
+        returned. Then a cut that they do not cross is added to the relaxation.
         """
         chosen = node.used.union(self._np.flatnonzero(lp_values > 0.5).tolist()) - node.forbidden
         self.effort -= len(cutter.actions)
@@ -408,8 +408,8 @@ def prove_by_branching(
     Arguments are those of :class:`Branching`; ``expired`` returns whether time is up. Costs are whole
     numbers, so it suffices that bounds of the proof exceed ``total - 1``.
 
-    Also returns ``None`` if a derivation costs less, an action costs nothing, the costs have a common divisor
-    above 1, or the proof becomes too long.
+    Also returns ``None`` if a derivation costs less, or the proof becomes too long. Costs of 0, and costs
+    with a common divisor above 1, are not supported: the result is ``None``.
     """
     costs = [cost(action) for action in actions]
     if math.gcd(*costs) != 1 or 0 in costs:

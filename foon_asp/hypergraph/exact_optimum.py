@@ -18,8 +18,8 @@ class ExactOptimum(NamedTuple):
 
     ``x``: the value of each column that is not 0.
     ``duals``: the dual of each row that is not 0.
-    ``value``: the cost of the solution. By duality, it equals the sum of the duals of the covering rows,
-    minus the dual of each limit times its amount.
+    ``value``: the cost of the solution. By duality, it equals the sum of the duals of covering rows, minus
+    for each limit its dual times its amount.
     """
 
     x: dict[int, Fraction]

@@ -16,11 +16,11 @@ _STEPS = 1000  # actions processed between two looks at the time
 
 
 class FirstAchievers:
-    """A graph without the add effects that an action never achieves first, computed at construction.
+    """A graph without the add effects that their action never achieves first.
 
-    The attribute ``graph`` is this graph. All actions of the graph that is passed have to be able to run. In
-    a large graph, only landmarks among the first objects are computed, so fewer add effects are removed. If
-    time is up, none is removed.
+    It is computed at construction, and is the attribute ``graph``. All actions of the given graph have to be
+    able to run. In a large graph, only landmarks among the first objects are computed, so fewer add effects
+    are removed. If time is up, none is removed.
     """
 
     def __init__(self, graph: Hypergraph, expired: Callable[[], bool] = lambda: False) -> None:

@@ -69,7 +69,7 @@ class Subproblem:
         return {unit for unit in units if restriction is None or not restriction.removed(unit)}
 
     def with_only_achievers(self, units: Iterable[int], max_units: int) -> set[int]:
-        """Return these units, and each unit that is the only achiever of a precondition of a returned unit.
+        """Return these units, and repeatedly the units that are the only achiever of a precondition.
 
         Kitchen items do not count as preconditions. Stops at about ``max_units`` units.
         """
@@ -91,8 +91,8 @@ class Subproblem:
     def tree_actions(self, units: Iterable[int]) -> set[int]:
         """Return the actions of the tree with ``units``.
 
-        They are the units themselves and, if an objective counts kitchen items, the actions that take the
-        items that the units need.
+        They are the units themselves. If an objective counts kitchen items, the actions that take the needed
+        items are added.
         """
         tree = set(units)
         if self.graph.start:

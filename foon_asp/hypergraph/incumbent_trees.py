@@ -104,7 +104,7 @@ def perturbation_search(
 
     Each round derives an irredundant tree by h_add or h_max at perturbed costs: each cost is multiplied by a
     random factor from 0.5 to 1.5. In half of the rounds, costs are also multiplied by 1 minus the LP values.
-    In the other half, a random part of the current tree costs nothing, and sometimes only a random part of
+    In the other half, a random part of the current tree costs nothing. In some of them, only a random part of
     the other actions is allowed. A tree that costs no more than the current tree replaces it.
 
     ``random_number`` returns numbers from 0 to 1. Ends when a tree costs at most ``sufficient_cost``, or time

@@ -64,10 +64,11 @@ class Cuts(NamedTuple):
 
 
 class _Level:
-    """Some objects that every derivation of a target makes, and the goal zone of the last of them.
+    """Some objects that every derivation of a target makes. The last of them has a goal zone.
 
-    ``zone``: the objects of the goal zone; empty until it is grown.
-    ``frontier``: the actions of reduced cost above 0 that achieve an object of the zone, as keys.
+    ``zone``: the goal zone, a set of objects that grows backwards through actions of reduced cost 0. It is
+    empty at first.
+    ``frontier``: the actions of reduced cost above 0 that achieve an object of the zone, as keys of a dict.
     ``earlier_cut``: the latest cut of the level below; ``None`` for the lowest level.
     ``cut``: the latest cut of this zone. Before the first one, it is ``earlier_cut``.
     """

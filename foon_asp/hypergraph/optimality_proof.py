@@ -49,8 +49,8 @@ class Rules(Protocol):
     def barred_actions(self, used: frozenset[int], without: frozenset[int]) -> Mapping[int, frozenset[int]]:
         """Return the actions that each rule bars, by the number of the rule.
 
-        A derivation with all ``used`` actions and no action of ``without`` breaks the rule if it also has a
-        barred action.
+        Take a derivation with all ``used`` actions and no action of ``without``. It breaks the rule if it
+        also has a barred action.
         """
 
     def breaking_actions(self, derivation: frozenset[int]) -> Sequence[int]:
@@ -348,10 +348,10 @@ class Prover:
     def _optimal_partition(
         self, cutter: Cutter, cost: Callable[[int], int], known_cuts: Iterable[frozenset[int]], enough: int
     ) -> CostPartition | None:
-        """Return a cost partition that is optimal, or that puts many actions above the cutoff.
+        """Return an optimal cost partition, or one by which many actions are excluded.
 
-        ``enough`` is the bound that is needed; the search ends when it is reached. Return ``None`` if
-        there is no cost partition.
+        ``enough`` is the bound that is needed; the search ends when it is reached. An action is excluded if
+        the bound plus its reduced cost exceeds ``enough - 1``. Return ``None`` if there is no cost partition.
         """
         partitioning = CostPartitioning(
             self._graph, cutter.targets, cutter.actions, cost, self._expired, known_cuts
@@ -387,8 +387,8 @@ class Prover:
     ) -> Proof | None:
         """Return a proof by reduced-cost fixing.
 
-        A derivation with an action costs at least the sum of the weights of ``packing`` plus the reduced cost
-        of the action. For derivations without the actions above the cutoff, ``others`` proves the goal. If no
+        A derivation with an action costs at least the bound of ``packing`` plus the reduced cost of the
+        action. For derivations without the actions above the cutoff, ``others`` proves the goal. If no
         landmark of the proof by ``others`` has such an action, that proof is returned as it is.
 
         Return ``None`` if too few actions are above the cutoff, or ``step`` is 0.

@@ -40,10 +40,10 @@ def search_within_limit(
     ``tree``: the units of a tree that exceeds the limit.
     ``row``: the amount of each unit, and the limit on the sum of the amounts of a tree.
 
-    A first tree within the limit is found by :func:`any_within_limit`. The price of an amount of 1 is the
-    Lagrange multiplier at which this first tree and ``tree`` cost the same. This price raises the cost of a
-    tree within the limit by at most the price times the limit. So lower bounds carry over. If many units
-    remain at this price, lower prices that rise up to it are tried.
+    A first tree within the limit is found by :func:`any_within_limit`. An amount of 1 gets the price at which
+    this first tree and ``tree`` cost the same, as a Lagrange multiplier. This price raises the cost of a tree
+    within the limit by at most the price times the limit. So lower bounds carry over. If many units remain at
+    this price, lower prices that rise up to it are tried.
 
     If time is up, fewer units are excluded. Returns ``None`` if it stays open whether a tree within the limit
     exists. Raises ``KeyboardInterrupt`` if a search is interrupted.

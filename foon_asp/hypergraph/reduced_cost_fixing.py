@@ -82,7 +82,7 @@ def reduced_cost_fixing(
 ) -> set[int]:
     """Return a superset of the allowed actions of irredundant trees of reduced cost up to ``limit``.
 
-    An action is excluded if its h_max plus the reduced costs of a path from it to a goal exceed the limit.
+    An action is excluded if its h_max plus the reduced costs of its cheapest path to a goal exceed the limit.
     Both are computed anew over the remaining actions until no more actions are excluded. If time is up, the
     superset is larger.
     """

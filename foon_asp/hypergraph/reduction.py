@@ -502,8 +502,8 @@ class _Presolve:
     def extend_or_run(self) -> None:
         """Extend trees for the goals alone, so that they have a unit of each required set, or run all rounds.
 
-        The rounds are run if there are no required sets, the task lacks the reduction ``dear``, or extending
-        leads to no gap.
+        The rounds are run if extending leads to no gap. Nothing is extended without required sets, or without
+        the reduction ``dear``.
         """
         restriction = self.task.problem.restriction
         if restriction is not None and restriction.required and Reduction.DEAR in self.task.reductions:

@@ -91,7 +91,7 @@ class SolvedGoals:
         """Return a tree without the removed actions; ``None`` if no such tree exists.
 
         It is the better of two irredundant trees. One follows h_add. The other is a subset of the union of
-        the first and the solved tree of the same goals, if there is one.
+        two trees: the first one, and the tree found earlier for the same goals.
         """
         graph, costs, derivations = task.graph, task.costs, self._derivations
         assert costs is not None
