@@ -21,8 +21,8 @@ class Arrays:
     With the objective ``kitchen``, no node is initial. Each kitchen item ``k`` then has an additional
     achiever without preconditions and of cost 1: the action ``items[k]``. Otherwise, ``items`` is empty.
 
-    A cost is a vector. Its *coordinates* are one for each objective, and for ``success`` one for each rate
-    below 1. Without objectives, all costs are 0.
+    A cost is a vector. It has a *coordinate* for each objective, except that ``success`` has one for each
+    rate below 1. Without objectives, all costs are 0.
 
     Covered constraints may add nodes and steps (:class:`~foon_asp.proof.compiled_rules.CompiledRules`,
     ``ruled``). Added nodes and steps have the last numbers. A step is an action of cost 0. ``forbidden`` are

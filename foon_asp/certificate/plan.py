@@ -47,7 +47,7 @@ _HALF = Fraction(1, 2)
 def covered_for_plans(covered: Coverage) -> Coverage:
     """Return the coverage for plans: rules that certificates of plans cannot check go to ``not_covered``.
 
-    Claims about user rules and limits by them are dropped.
+    Claims about user rules, and limits by user rules, are dropped.
     """
     rules = tuple(rule for rule in covered.rules if rule["rule"] in PLAN_RULES)
     others = {canonical_json(rule) for rule in covered.rules if rule not in rules and rule["rule"] != OWN}

@@ -31,8 +31,7 @@ class EngineAnswer(NamedTuple):
     """The answer of an engine.
 
     ``engine``: the name of the engine.
-    ``objectives``: the objectives by which the engine optimized. They are the first ones of the question, at
-    least one.
+    ``objectives``: the first objectives of the question, at least one, by which the engine optimized.
     ``units``: the unit ids of a tree that the engine claims to be optimal by these objectives; ``None`` if it
     claims that no tree exists, or has not finished.
     ``finished``: false if the engine stopped before it had an answer.
@@ -45,7 +44,7 @@ class EngineAnswer(NamedTuple):
 
 
 class Solve(Protocol):
-    """The function by which an engine, built-in or of another package, solves (docs/entry-points.md)."""
+    """The interface of the function with which an engine solves a question (docs/entry-points.md)."""
 
     def __call__(
         self,

@@ -69,9 +69,10 @@ class Subproblem:
         return {unit for unit in units if restriction is None or not restriction.removed(unit)}
 
     def with_only_achievers(self, units: Iterable[int], max_units: int) -> set[int]:
-        """Return these units, and repeatedly the units that are the only achiever of a precondition.
+        """Return these units together with the units without which they cannot be executed.
 
-        Kitchen items do not count as preconditions. Stops at about ``max_units`` units.
+        If a precondition has only one achiever, this achiever is added, and its preconditions are looked at
+        as well. Kitchen items do not count as preconditions. Stops at about ``max_units`` units.
         """
         graph, kitchen = self.graph, self.problem.kitchen
         closed, waiting = set(units), list(units)

@@ -46,8 +46,8 @@ class Gap:
 
     ``incumbent``: the actions of the best tree so far.
     ``lower_bound``: a lower bound on the cost of every tree, in the units of :class:`ExactCosts`.
-    ``candidates``: the actions that better trees can have. If equally good trees are wanted, their actions
-    are candidates as well.
+    ``candidates``: the actions that better trees can have. If equally good trees are wanted, the actions of
+    such trees are candidates as well.
     ``budget``: the number of actions that branch and bound may still look at.
     ``proved``: whether the incumbent is proved optimal.
     ``evidence``: the cuts that prove the lower bound.

@@ -16,7 +16,8 @@ def irredundant_subset(graph: GoalGraph, tree: Collection[int], cost: Callable[[
     """Return an irredundant subset of a tree, by removing redundant actions, expensive ones first.
 
     All actions of the tree have to be able to run, and together they have to reach the goals. Best achievers
-    by h_add are followed from the goals. The actions that this does not use are removed first, all at once.
+    by h_add are followed from the goals. Actions that are not reached in this way are removed first, all at
+    once.
     """
     support = Support(graph, tree, cost)
     waiting = [(-cost(action), action) for action in support.actions]

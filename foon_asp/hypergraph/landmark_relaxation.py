@@ -60,7 +60,10 @@ class LandmarkRelaxation:
         self._whole_cuts: dict[frozenset[int], frozenset[int]] = {}
 
     def add_cut(self, cut: frozenset[int]) -> None:
-        """Add a row for a cut, given by objects of the subgraph: its columns are the landmark actions."""
+        """Add a row for a cut of the subgraph, given by its objects.
+
+        The columns of the row are the actions of the landmark.
+        """
         self.rows.append(self._np.array(self.landmark_of(cut), dtype=self._np.int32))
         self.cuts.append(cut)
         self.covering.add_row(self.rows[-1])

@@ -405,7 +405,10 @@ class Prover:
         return CostFixing(tuple(sorted(fixed)), packing._replace(rounded=0), proof) if fixed else proof
 
     def _landmark_actions(self, proof: Proof) -> Iterator[int]:
-        """Yield the actions that cross the cuts of a proof, also fixed and forbidden ones, with repeats."""
+        """Yield the actions that cross the cuts of a proof.
+
+        Fixed and forbidden actions are included. An action may be yielded more than once.
+        """
         for objects in {cut.objects for cut in cuts_of(proof)}:
             yield from self._landmark_of(frozenset(objects))
 
@@ -551,7 +554,7 @@ class _NodeRelaxation:
         return order.compare(self._prover.round_up(value)[0], enough) >= 0
 
     def relax(self, enough: Vector | None) -> ExactOptimum | None:
-        """Add cuts until the bound is ``enough``, or no cut is found that the LP solution violates.
+        """Add violated cuts until the bound is ``enough``, or until no more are found.
 
         ``enough``: the bound that suffices; ``None`` for no such bound. The last LP solution is recorded in
         ``lp_values``. Returns the exact optimum of the rows. Returns ``None`` if exact arithmetic fails.

@@ -54,8 +54,8 @@ class Reduced(NamedTuple):
     """A presolved question.
 
     ``tree``: the units of the incumbent; ``None`` if there is no tree.
-    ``units``: the units of the incumbent and, unless it is ``settled``, those that a better tree can have,
-    ascending.
+    ``units``: the units of the incumbent, ascending. If not ``settled``, the units that a better tree can
+    have are included.
     ``settled``: whether the incumbent is proved optimal.
     ``costs``: the exact costs; ``None`` if rates are too fine.
     ``bound``: a lower bound on the cost of every tree; 0 if rates are too fine.

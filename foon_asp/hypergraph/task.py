@@ -52,7 +52,7 @@ class Task:
     def only_better(self, gap: Gap) -> bool:
         """Return whether only trees better than the incumbent are wanted.
 
-        This is so with the reduction ``bounds``, unless the incumbent costs less than ``below``.
+        They are with the reduction ``bounds``, unless the incumbent costs less than ``below``.
         """
         return Reduction.BOUNDS in self.reductions and self.incumbent_cost(gap) >= self.below
 
