@@ -138,10 +138,10 @@ class Arrays:
         return self.ruled.barred_units(self._units_among(used), without)
 
     def breaking_actions(self, derivation: frozenset[int]) -> list[int]:
-        """Return units of a derivation that together break the first barring constraint that it breaks.
+        """Return units that together break the first barring constraint that a derivation breaks.
 
-        Without such a constraint, return an empty list. Units that the constraint bars come first. The set of
-        units is irreducible: the constraint bars no unit of a smaller set.
+        If it breaks no such constraint, return an empty list. Units that the constraint bars come first. The
+        set of units is irreducible: the constraint bars no unit of a smaller set.
         """
         chosen = self._units_among(derivation)
         for barred in self.ruled.barred.values():

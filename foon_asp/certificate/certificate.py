@@ -226,7 +226,8 @@ def _write_tree_certificate(
     def packing_json(packing: Packing) -> dict[str, object]:
         """Return the JSON of a cost partition: weights of cuts, weights of limits, and the divisor.
 
-        Limits and divisor are omitted where the partition does not use them. Cuts and limits get numbers.
+        The divisor says to which multiples the bound is rounded up. Limits and divisor are omitted where the
+        partition does not use them. Cuts and limits get numbers.
         """
         weights = sorted((cut_number(cut), arrays.vector_json(weight)) for cut, weight in packing.weights)
         limits = sorted(

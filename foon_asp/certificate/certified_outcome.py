@@ -120,8 +120,8 @@ def _find_plan_certificate(
 def _contradiction(outcome: Outcome, certificate: Certificate, covered: Coverage) -> str | None:
     """Return in words why an answer and a certificate contradict each other; ``None`` if they do not.
 
-    The verifier has accepted the certificate, but does not know the answer. So goals and claim of the
-    certificate are compared with those of the answer here.
+    The verifier has accepted the certificate, but does not know the answer. So the goals and the claims of
+    the two are compared here.
     """
     problem, content = outcome.problem, certificate.content
     goals = tuple(goal["id"] for goal in content["goals"])

@@ -410,7 +410,7 @@ class _ProofWriter:
 
     ``order``: the order of costs by an objective that multiplies rates, else ``None``.
     ``levels``, ``scales``: the levels of earlier objectives, and the scales of their integers.
-    ``columns``: the id of the kitchen item of each column of the linear program that is not an action.
+    ``columns``: for each column of the linear program that is no action, the id of its kitchen item.
     """
 
     def __init__(

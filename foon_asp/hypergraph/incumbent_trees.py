@@ -70,9 +70,10 @@ def _scaled_cost(cost: int, share: float) -> int:
 def trees_by_partition(
     graph: GoalGraph, actions: Collection[int], cost: Callable[[int], int], partition: "CostPartition"
 ) -> Iterator[set[int]]:
-    """Yield up to four irredundant trees that follow an LP solution: by h_add and by h_max, at two prices.
+    """Yield up to four irredundant trees that follow an LP solution.
 
-    One price is the cost times 1 minus the LP value, the other is about the reduced cost.
+    They follow h_add or h_max, at one of two prices. The first price of an action is its cost times 1 minus
+    its LP value. The second is about its reduced cost.
     """
 
     def price_by_lp_value(action: int) -> int:

@@ -99,8 +99,8 @@ class _Target:
     def top_level(self, free: Container[int]) -> _Level | None:
         """Return the topmost level whose last object is not free; ``None`` if the target itself is free.
 
-        An object is free if it can be made at reduced cost 0. Levels above that have only free objects are
-        removed, and so are free objects at the end of a level.
+        An object is free if it can be made at reduced cost 0. Higher levels, which have only free objects,
+        are removed from the stack. Free objects at the end of a level are removed as well.
         """
         while self.levels:
             level = self.levels[-1]

@@ -95,8 +95,8 @@ class Lexicographic:
     ) -> int:
         """Return the sign of ``-log`` of the product of all ``rates[i] ** exponents[i]``.
 
-        It is -1 for a product above 1, and exact. Floats decide it if they are precise enough. Otherwise,
-        logarithms with more and more digits do.
+        The sign is exact. It is -1 for a product above 1. If floats are not precise enough to decide it,
+        logarithms with more and more digits are computed.
         """
         if not any(exponents):
             return 0

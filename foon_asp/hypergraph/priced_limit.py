@@ -162,8 +162,8 @@ def any_within_limit(
     """Search for any tree within the limit of ``row``, by minimizing the sum of its amounts.
 
     The search ends at the first tree within the limit. Returns ``WithinLimit(None)`` if a bound proves that
-    there is no such tree. Returns ``None`` if neither is achieved. Raises ``KeyboardInterrupt`` if the search
-    is interrupted.
+    there is no such tree. Returns ``None`` if the search ends with neither a tree nor a proof. Raises
+    ``KeyboardInterrupt`` if the search is interrupted.
     """
     units_cost = ExactCosts(subproblem.problem, (Objective.UNITS,), subproblem.remaining)
     limit = units_cost.strict_upper_bound * (row.bound + 1)
