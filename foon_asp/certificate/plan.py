@@ -150,9 +150,9 @@ class _PlanQuestion:
         """Prove that no plan costs less than the plan in hand by an objective, or prove a bound.
 
         Only plans that are as good by ``earlier_objectives`` count. Return a pair: the JSON of the proof, and
-        the proved bound. The bound is ``None`` if no plan costs less than the plan in hand. For objectives
-        after the first, nothing less is proved. If the plan in hand costs nothing, the proof is empty. Return
-        ``None`` instead of a pair if nothing is proved.
+        the proved bound. The bound is ``None`` if no plan costs less than the plan in hand. A bound below
+        that cost is proved for the first objective only. If the plan in hand costs nothing, the proof is
+        empty. Return ``None`` instead of a pair if nothing is proved.
         """
         earlier_levels = [self._level(earlier_objective) for earlier_objective in earlier_objectives]
         if any(level is None for level in earlier_levels):

@@ -17,8 +17,8 @@ class ClaimedAnswer(NamedTuple):
     ``outcome``: the answer.
     ``settings``: the settings under which the answer was found.
     ``soft``: the weight of each soft constraint.
-    ``penalty``: the claimed sum of the weights of the soft constraints that the tree of the outcome violates;
-    ``None`` without soft constraints.
+    ``penalty``: the claimed penalty of the tree: the sum of the weights of the soft constraints that it
+    violates; ``None`` without soft constraints.
     """
 
     outcome: Outcome

@@ -268,7 +268,7 @@ class Branching:
 
         The derivation has the used actions and those of LP value above 1/2, without forbidden actions. It
         becomes the incumbent if it is better. If the actions do not reach all targets, the empty set is
-        returned. Then a cut that they do not cross is added to the relaxation.
+        returned. Then a cut that the actions do not cross is added to the relaxation.
         """
         chosen = node.used.union(self._np.flatnonzero(lp_values > 0.5).tolist()) - node.forbidden
         self.effort -= len(cutter.actions)

@@ -124,8 +124,8 @@ class Lexicographic:
     def _coprime_factors(self) -> list[dict[int, dict[int, int]]]:
         """For each level, the factors of a coprime base of its rates.
 
-        Each factor is mapped to its exponents in the rates, by index of the rate. A factor of a denominator
-        has a negative exponent.
+        Each factor is mapped to the exponent that it has in each rate, by the index of the rate. A factor of
+        a denominator has a negative exponent.
         """
         factors_by_level: list[dict[int, dict[int, int]]] = []
         for rates in self.levels:

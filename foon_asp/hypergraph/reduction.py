@@ -189,8 +189,8 @@ def reduce_at_costs(
     ``known_tree``: the units of a tree that may become the first incumbent; empty for none.
     ``below``: a cost; 0 for none. With it, two kinds of units remain: those of trees that cost less than it,
     and those of trees better than the incumbent.
-    ``max_actions``: with ``below``, a number of actions. If more remain, and the first cuts exclude hardly
-    any action, the reduction ends after these cuts.
+    ``max_actions``: a number of actions, used only with ``below``. If more remain, and the first cuts exclude
+    hardly any action, the reduction ends after these cuts.
 
     Interruptions are treated as by :func:`reduce`.
     """

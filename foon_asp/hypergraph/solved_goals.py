@@ -16,7 +16,9 @@ if TYPE_CHECKING:  # few questions need it
 
 
 class SolvedGoals:
-    """Trees of solved questions that differ only in goals and removed units, and landmarks that they share.
+    """Trees of solved questions, and landmarks that the questions share.
+
+    The questions differ only in goals and removed units.
 
     Landmarks are shared as soon as a question was solved that greedy cuts alone do not solve. Easier
     questions are solved faster one by one.
@@ -107,8 +109,9 @@ class SolvedGoals:
     def record(self, task: Task, gap: Gap | None) -> None:
         """Store the tree of a proved gap; other gaps, and ``None``, are ignored.
 
-        Landmarks are shared as soon as a proof needed the linear relaxation. If this first question has
-        rounded costs, or is not reduced by both ``bounds`` and ``dear``, landmarks are never shared.
+        Landmarks are shared as soon as a proof needed the linear relaxation. If the question of the first
+        such proof has rounded costs, or is not reduced by both ``bounds`` and ``dear``, landmarks are never
+        shared.
         """
         if gap is None or not gap.proved:
             return
