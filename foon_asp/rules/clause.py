@@ -180,7 +180,7 @@ def source_of(statement: AST) -> Source:
 def statement_text(statement: AST, rules: Loaded | None = None) -> str:
     """Return a statement on one line, as it is written in its ``.lp`` file or in the text of ``rules``.
 
-    If it is from neither, it is returned as clingo prints it.
+    A statement that is from neither is returned as clingo prints it.
     """
     begin, end = statement.location.begin, statement.location.end
     if isinstance(rules, Stated) and begin.filename == rules.place:
@@ -219,7 +219,7 @@ def value(term: AST, constants: Constants) -> Symbol | None:
 def plain_value(symbol: Symbol) -> str | int | None:
     """Return the value of a number or of a text in quotes, without the quotes; ``None`` for others.
 
-    Among the others are words without quotes, ``#sup`` and ``#inf``.
+    For example, it is ``None`` for a word without quotes, ``#sup`` and ``#inf``.
     """
     if symbol.type is SymbolType.Number:
         return symbol.number
@@ -239,9 +239,9 @@ def factors(term: AST) -> list[AST]:
 def constant_values(definitions: Iterable[AST], settings: Sequence[str]) -> dict[str, Symbol | None]:
     """Return the values of constants by name, from ``#const`` statements and settings ``name=value``.
 
-    A setting replaces a default value; settings of other names are ignored. The value is ``None`` if only
-    clingo can tell it. That is so for arithmetic, for the name of another constant, and for a constant with
-    two statements, for example.
+    A setting replaces a default value; settings of other names are ignored. A value is ``None`` if only
+    clingo can tell it. Examples are arithmetic, the name of another constant, and a constant with two
+    statements.
     """
     texts: dict[str, str | None] = {}
     for definition in definitions:

@@ -94,8 +94,8 @@ class TraitReader:
 def _traits(atoms: Sequence[_Atom]) -> Iterator[Trait]:
     """Yield the traits that a conjunction of atoms states for the unit that it uses.
 
-    They are its motion, and labels and ingredients of its inputs and outputs, as far as they are texts. For
-    an input that the rule keeps out of the kitchen, the role is ``Role.MADE``.
+    Traits are the motion of the unit, and the labels and ingredients of its inputs and outputs. Only texts
+    become traits. If the rule says that an input is not in the kitchen, the role is ``Role.MADE``.
     """
     units = {terms[0] for signature, negations, terms in atoms if signature in {USE, TIMES} and not negations}
     facts = [(signature[0], terms) for signature, negations, terms in atoms if not negations]

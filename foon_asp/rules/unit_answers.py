@@ -61,7 +61,7 @@ def ask_units(
 def candidate_units(network: Network, wanted: Iterable[RequiredUnit]) -> set[int] | None:
     """Return the ids of units that may have the traits in ``wanted``, among them all that rules require.
 
-    Of each row, only the first trait is looked at. Return ``None`` if a row has no trait.
+    Only the first trait of each row in ``wanted`` is looked at. Return ``None`` if a row has no trait.
     """
     units: set[int] = set()
     for row in (row for requirement in wanted for row in requirement.rows):
