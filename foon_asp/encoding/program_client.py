@@ -116,7 +116,7 @@ def _start_worker() -> Worker:
 
 
 def _release_worker(worker: Worker) -> None:
-    """Make a process drop its program, unless it is busy or dead, and return it to the pool."""
+    """Return a worker process to the pool; a process that is not busy or dead first drops its program."""
     if worker.is_ready:
         worker.tell(pack_message(("forget",)))
     give_back_worker(_KEY, worker)

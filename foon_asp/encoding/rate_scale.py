@@ -78,8 +78,8 @@ def rate_scale(rates: Collection[Fraction]) -> RateScale:
 def _scale(logarithms: Collection[Decimal]) -> int:
     """Return the power of ten by which logarithms above 0 are multiplied to become weights.
 
-    It is 10^8 if there are no logarithms. If the greatest weight would exceed 32 bits, it is smaller. If the
-    least weight would be below 1000, it is greater, as far as 32 bits allow.
+    The usual result is 10^8, also without logarithms. It is smaller if the greatest weight would otherwise
+    exceed 32 bits. It is greater if the least weight would otherwise be below 1000, as far as 32 bits allow.
     """
     if not logarithms:
         return USUAL_SCALE
