@@ -313,7 +313,7 @@ def check_encodings(
 
     Return two kinds of warnings:
 
-    - A predicate in a body of ``added`` is not defined anywhere. The warning suggests the most similar predicate.
+    - A predicate in a body of ``added`` is not defined anywhere; the most similar one is suggested.
     - A term in the user's constraints is compared with numbers, but can never be a number.
 
     Raises :class:`InputError` for statements that would change the set of trees or their order, or that

@@ -88,7 +88,8 @@ class MeasureRules(NamedTuple):
     ``statements``: the program for clingo, one statement per line.
     ``reads``: the names of the predicates of facts that the rules read.
     ``nameless``: whether units cost the same if their facts differ only in numbers of units and object nodes.
-    ``plain``: whether each rule has few ground instances: no interval, no division, at most one table, few atoms.
+    ``plain``: whether each rule has few ground instances: no interval or division, at most one table,
+    and few atoms.
     """
 
     names: dict[str, Source]

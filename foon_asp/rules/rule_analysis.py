@@ -79,7 +79,8 @@ class Rule(NamedTuple):
     ``nonlocality``: the facts outside the tree that the rule reads; empty for a local rule
     (:mod:`foon_asp.rules.locality`). A ``HELPER`` is always local: its facts count for the rules that use it.
     ``nonlocality_source``: the place where the rule reads these facts.
-    ``one_of``: whether the rule requires a unit of each of one or several sets. They are found before the search.
+    ``one_of``: whether the rule requires a unit of each of one or several sets, which are
+    found before the search.
     """
 
     source: Source

@@ -62,9 +62,9 @@ class Removal(NamedTuple):
 class AtLeastOne(NamedTuple):
     """A rule that requires a unit of each of several sets.
 
-    ``program``: rules for clingo, in which a term stands for each set. They derive ``asks`` with the term of each
-    required set. They derive ``meets`` with this term in the world of each unit of the set. If they derive ``meets``
-    in the world ``NOTHING``, no unit of the set is needed.
+    ``program``: rules for clingo, in which a term stands for each set. They derive ``asks`` with the term of
+    each required set. They derive ``meets`` with this term in the world of each unit of the set. If they
+    derive ``meets`` in the world ``NOTHING``, no unit of the set is needed.
     ``wanted``: the traits of the units in the sets.
     """
 
