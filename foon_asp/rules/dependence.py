@@ -79,8 +79,8 @@ class Dependence:
     for a shopping list; their monotonicity is unknown.
 
     ``doubts``: for each predicate in a head whose monotonicity is unknown, the reason.
-    ``loops``: the predicates that depend on themselves through ``not``, an aggregate, a condition or a choice.
-    The value is the place of a rule of this cycle.
+    ``loops``: the predicates that depend on themselves through ``not``, an aggregate, a condition or a
+    choice. The value is the place of a rule of this cycle.
     """
 
     def __init__(

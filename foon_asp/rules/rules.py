@@ -103,7 +103,7 @@ class Rules:
             texts.update((id(statement), statement_text(original, file)) for statement, original in pairs)
 
         def source_in_file(source: Source | None) -> Source | None:
-            """Return a place; if it is in the use of a ready-made constraint, return the place in its file."""
+            """Return a place; if it is in a use of a ready-made constraint, return the place in its file."""
             use = None if source is None else uses.get(source.file)
             return source if source is None or use is None else source._replace(file=str(use.file))
 
