@@ -12,7 +12,7 @@ from foon_asp.problem.number import INT32_MAX
 
 
 class CostScale(NamedTuple):
-    """Integer weights of costs, for an objective by which costs of units are fractions and add up.
+    """Integer weights of costs, for an objective whose costs are fractions and add up.
 
     ``scale``: the number by which costs are multiplied.
     ``exact``: whether no weight is rounded.
@@ -32,7 +32,7 @@ def cost_scale(costs: Iterable[Fraction]) -> CostScale:
     """Return the scale of the costs of units; ``costs`` has one for each unit.
 
     If the least common denominator turns all costs into integers of 32 bits, it is the scale, and weights are
-    exact. Otherwise, weights are rounded down, and the scale is the greatest by which they fit into 32 bits,
+    exact. Otherwise, weights are rounded down. The scale is then the greatest by which they fit into 32 bits,
     but at most 10^8. The sum of all weights may exceed 32 bits.
     """
     costs = list(costs)

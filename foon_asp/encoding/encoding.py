@@ -70,8 +70,8 @@ _IDENTIFIER = re.compile(r"[a-z][A-Za-z0-9_]*")
 class Encoding:
     """A parsed file or text of rules: the predicates that it defines and uses, and its constants.
 
-    The name of a negated atom (``-p``) begins with a minus. Places are those of first occurrences; for rules
-    without a file, their name stands in place of the file.
+    The name of a negated atom (``-p``) begins with a minus. Each place is that of the first occurrence. In
+    rules without a file, the name of the rules stands for the file.
 
     Attributes:
         rules: The file or text.
@@ -518,9 +518,8 @@ def undefined_message(signature: Signature, defined: set[Signature]) -> str:
 def constant_arguments(constants: Sequence[str], encodings: Sequence[Encoding]) -> list[str]:
     """Return settings ``NAME=VALUE`` as arguments of clingo: ``-c`` and ``NAME=VALUE`` by turns.
 
-    Each value gets the type of the default in its ``#const``. Where the default is a string, the value
-    becomes a string, with or without quotes. Where the default is a number, the value has to be an integer of
-    32 bits.
+    Each value gets the type of the default in its ``#const``. If the default is a string, the value may be
+    given with or without quotes. If the default is a number, the value has to be an integer of 32 bits.
 
     Raises :class:`UserError` for a setting of another form, an unknown name, and a value of another type.
     Also raises it for a constant that only a ready-made constraint with its own values has.
@@ -657,7 +656,7 @@ def program_fault(
 
 
 def _dropped_message(message: str, term: str) -> str:
-    """Return a message for the user: clingo would drop an instance of a rule or aggregate element, and why.
+    """Return a message for the user that clingo would drop an instance of a rule or aggregate element.
 
     ``message`` is the reason as clingo states it, and ``term`` the term that it names.
     """
@@ -683,8 +682,8 @@ def located_diagnostic(
 ) -> Diagnostic:
     """Return a diagnostic with its source line, found in ``files`` or in the file of ``source``.
 
-    A place in a ready-made constraint with constants of its own is replaced by the place in its file, and the
-    message gets the text of the option. A place after the end of a text is moved to the end.
+    In a ready-made constraint with constants of its own, the place becomes the place in its file. The message
+    then gets the text of the option. A place after the end of a text is moved to the end.
     """
     for rules in files:
         if isinstance(rules, Stated) and rules.place == source.file:

@@ -221,8 +221,8 @@ def _tokens(text: str) -> Iterator[_Token]:
 def string_constant(value: str) -> str:
     """Return the text that a setting of a string constant means.
 
-    It may be in quotes; then escaped characters in it are resolved. Raises :class:`UserError` for a setting
-    that begins with a quote and is no string of clingo.
+    The setting may be in quotes; then escaped characters in it are resolved. Raises :class:`UserError` for a
+    setting that begins with a quote and is no string of clingo.
     """
     if not value.startswith('"'):
         return value

@@ -563,7 +563,7 @@ def write_given(numbers: Collection[int]) -> str:
 
 
 def write_same_rates(classes: Sequence[Iterable[int]]) -> str:
-    """Return facts ``_same_rate(R,U)``: the units of each success rate number R.
+    """Return facts ``_same_rate(R,U)``: unit number U has success rate number R.
 
     ``classes`` has the numbers of the units with each rate; R is the index in ``classes``.
     """

@@ -28,7 +28,7 @@ class RateScale(NamedTuple):
 
     ``weights[p]`` is ``floor(scale * -ln p)``; a rate slightly below 1 may have the weight 0.
     ``exponents[p][f]`` is the exponent of factor number ``f`` in the rate ``p``. The factors are pairwise
-    coprime, so two products of rates are equal exactly when the sums of their exponents are.
+    coprime. So two products of rates are equal exactly when the sums of their exponents are equal.
     """
 
     scale: int

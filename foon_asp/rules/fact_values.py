@@ -206,7 +206,7 @@ class FactValues:
 def unknown_text_message(facts: Sequence[str], word: str, meant: str | None) -> str:
     """Return the message that no fact of the predicates ``facts`` has the text ``word``.
 
-    It suggests ``meant`` as the intended name, unless this is ``None``.
+    It suggests ``meant`` as the intended name, unless ``meant`` is ``None``.
     """
     text = f"nothing in this network has the {' or '.join(facts)} {quote(word)}"
     return text if meant is None else f"{text}; did you mean {quote(meant)}?"

@@ -270,9 +270,11 @@ class Locality:
 
 
 class _LackingTerm(NamedTuple):
-    """A term that has to be in the tree for a rule to be local, and the reason if it is not.
+    """A term that has to be in the tree for a rule to be local, but may be outside.
 
-    ``term`` is empty if the rule is not local whatever terms are in the tree.
+    ``term``: the term as text; empty if the rule is not local whatever terms are in the tree.
+    ``subject``: the kind of thing that the term stands for.
+    ``nonlocality``: the reason why the rule is not local.
     """
 
     term: str

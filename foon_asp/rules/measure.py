@@ -319,9 +319,9 @@ def _value_text(value: "Value") -> str:
 def read_measures(rules: str | PathLike[str] | Iterable[str | PathLike[str]]) -> dict[str, Measure]:
     """Read measures from one or several files or texts of rules; return them by name.
 
-    An existing path is a file. Any other text is rules if it has ``:-``, or ends in a full stop; else it is a
-    path. Repeated texts and files are read once. Raises :class:`UserError` for an empty text, for faults in
-    rules, and for a measure that two texts define.
+    An existing path is a file. Any other text is rules if it has ``:-`` or ends in a full stop. Otherwise it
+    is a path. Repeated texts and files are read once. Raises :class:`UserError` for an empty text, for faults
+    in rules, and for a measure that two texts define.
     """
     rules = [rules] if isinstance(rules, str | PathLike) else list(rules)
     if not rules:

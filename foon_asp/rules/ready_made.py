@@ -93,7 +93,7 @@ class ReadyMade:
     def restriction_of(self, problem: Problem, deadline: Deadline) -> Restriction | Contradiction:
         """Return the units that the constraints remove from a problem, and the sets that they require.
 
-        Return :class:`Contradiction` if a constraint holds of no tree, or if a required set is empty. The
+        Return :class:`Contradiction` if no tree keeps to some constraint, or if a required set is empty. The
         deadline is not looked at.
         """
         meanings, _ = self._meanings(problem)

@@ -22,7 +22,7 @@ _Atom = tuple[Signature, int, tuple[_Term, ...]]  # with its negations
 
 
 class TraitReader:
-    """Reader of the traits that conjunctions about one unit of the tree require of it.
+    """Reader of the traits that a conjunction about one unit of the tree requires of this unit.
 
     It replaces auxiliary predicates by the bodies of their rules. ``clauses`` are the rules, by the predicate
     that they derive.
@@ -82,7 +82,7 @@ class TraitReader:
     def _replace_term(self, term: AST, names: dict[str, _Term]) -> _Term:
         """Return the value of a constant, or the term that ``names`` has for a variable.
 
-        A variable that is not in ``names`` gets a new name there; each ``_`` gets another one.
+        A variable that is not in ``names`` gets a new name there. Each ``_`` becomes a different new name.
         """
         symbol = value(term, self._constants)
         if symbol is not None:

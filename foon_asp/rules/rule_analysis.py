@@ -156,7 +156,7 @@ class Analysis:
         """Return the kind of a clause, and the reason if the kind is ``OTHER``.
 
         The reason is ``None`` for any other kind. A plain rule with a head is a ``HELPER``, unless its
-        predicate is derived from itself through ``not``, an aggregate, a condition or a choice.
+        predicate is in the ``loops`` of :class:`Dependence`.
         """
         dependence = self.dependence
         doubt: Doubt | None
@@ -191,8 +191,8 @@ class Analysis:
     def _why_never(self, body: Iterable[Conjunct]) -> str | None:
         """Return why a body cannot hold, whatever the facts are; ``None`` if no reason is found.
 
-        A reason is a comparison or aggregate that is known to be false, or an argument of the wrong type in a
-        fact: a number where the facts have a text, for example.
+        One reason is a comparison or aggregate that is known to be false. Another one is an argument of the
+        wrong type: a number where the facts have a text, for example.
         """
         for conjunct in body:
             if isinstance(conjunct, Test | Aggregate) and conjunct.holds is False:

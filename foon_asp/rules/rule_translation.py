@@ -51,9 +51,11 @@ _ONE_EXECUTION = {USE, TIMES}
 
 
 class Removal(NamedTuple):
-    """A rule that removes the units in whose worlds its program derives ``breaks``.
+    """A rule that removes units.
 
-    If the program derives ``breaks`` in the world ``NOTHING``, there is no tree.
+    Its program derives ``breaks`` in worlds, each of which stands for one unit
+    (:mod:`foon_asp.rules.worlds`). A unit is removed if its world has ``breaks``. If the world ``NOTHING``
+    has ``breaks``, there is no tree.
     """
 
     program: tuple[str, ...]
@@ -141,8 +143,8 @@ class Translator:
     def at_least_one(self, clause: Clause) -> AtLeastOne | None:
         """Return the at-least-one constraint that a requiring rule stands for.
 
-        Return ``None`` if the rule calculates, or if one of its conditions on the tree is not the absence of
-        a unit.
+        Return ``None`` if the rule calculates. Return ``None`` also if it has a condition on the tree that is
+        not the absence of a unit.
         """
         unit_positions = [n for n, conjunct in enumerate(clause.body) if self._count_units_read([conjunct])]
         set_positions = [n for n in range(len(clause.body)) if n not in unit_positions]
@@ -331,10 +333,10 @@ class Translator:
         return f'{ANSWER[0]}({self._numbers},"{what}",{of},{world})'
 
     def _rule_text(self, head: str, clause: Clause) -> str:
-        """Return a rule with this head and the body of a clause.
+        """Return a rule with the head ``head`` and the body of a clause.
 
-        If the head has the variable for worlds, the rule gets a condition on it: any world if the clause
-        depends on the tree, else the world without units.
+        If the head has the variable for worlds, the body gets a condition on this variable. It is any world
+        if the clause depends on the tree, else the world without units.
         """
         body = [str(self._worlds.visit(node)) for node in clause.ast.body]
         if self._world in head:

@@ -81,8 +81,8 @@ def _read_answers(problem: Problem, rows: Iterable[tuple[Value, ...]]) -> UnitAn
     """Return the removed units, required sets and weights in the atoms that clingo derived.
 
     ``rows`` are the arguments of the atoms ``_of_unit/4`` (see :mod:`foon_asp.rules.rule_translation`).
-    Worlds of unknown units are skipped. If there is no tree or a required set is empty, return
-    :class:`Contradiction` with the weights.
+    Worlds of unknown units are skipped. If there is no tree or a required set is empty, the restriction in
+    the result is :class:`Contradiction`.
     """
     removed: set[int] = set()
     required: dict[tuple[Value, Value], set[int] | None] = {}  # None where a set is not needed
