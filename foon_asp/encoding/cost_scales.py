@@ -162,9 +162,9 @@ class Scales:
     def vector(self, units: Iterable[int]) -> dict[int, int]:
         """Return the vector of units, which determines their exact total by the rounded objective.
 
-        For success, its entries are the exponents of their rates' product, by factor number
-        (:class:`RateScale`). For any other objective, they are the numbers of units of each cost, by the
-        index of the cost. Entries of 0 are included.
+        For success, the entries are the exponents of the product of rates, by factor number
+        (:class:`RateScale`). For any other objective, the entries are the numbers of units of each cost, by
+        the index of the cost. Entries of 0 are included.
         """
         assert self.rounded is not None
         if multiplies(self.rounded):

@@ -216,13 +216,13 @@ class _Collector(Transformer):
             self.visit(statement)
 
     def visit_Rule(self, rule: AST) -> AST:  # noqa: N802 (the name clingo looks for)
-        """Visit a rule; the atoms in its head are recorded as defined, those in its body as used."""
+        """Visit a rule; record the atoms in its head as defined, and the atoms in its body as used."""
         self._visit_head(rule.head)
         self.visit_sequence(rule.body)
         return rule
 
     def visit_External(self, external: AST) -> AST:  # noqa: N802
-        """Visit ``#external``; its atom is recorded as defined, those in its body as used."""
+        """Visit ``#external``; record its atom as defined, and the atoms in its body as used."""
         self._visit_head(external.atom)
         self.visit_sequence(external.body)
         return external

@@ -323,7 +323,7 @@ def _object_atom(problem: Problem, o: int) -> str:
 
 
 def _object_atoms(problem: Problem, o: int) -> list[_Atom]:
-    """Return the facts about an object node without ``object/1`` and ``kitchen/1``."""
+    """Return the facts about an object node, except ``object/1`` and ``kitchen/1``."""
     number = problem.network.object_number(o)
     return [(name, f"{number},{arguments}") for name, arguments in object_facts(problem.network.objects[o])]
 

@@ -277,8 +277,8 @@ def variables(*syntax_nodes: AST) -> Iterator[str]:
 def global_variables(conjunct: Conjunct) -> Iterator[str]:
     """Yield the names of the global variables of a conjunct, with repeats.
 
-    They are the variables of a literal, a comparison or a guard. Those in the elements of an aggregate and in
-    a conditional literal may be local, and are left out.
+    They are the variables of a literal, a comparison or a guard. Variables in the elements of an aggregate
+    and in a conditional literal may be local, and are left out.
     """
     if isinstance(conjunct, Literal):
         return variables(*conjunct.arguments)

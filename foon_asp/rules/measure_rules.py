@@ -176,7 +176,8 @@ class _MeasureReader:
     ) -> Iterator[Statement]:
         """Yield rules that derive the cost ``BEYOND`` where arithmetic overflows 32 bits in clingo.
 
-        ``names`` are the measures, ``dependent`` the predicates that get a world, ``world`` its variable.
+        ``names`` are the measures. ``dependent`` are the predicates that get a world as argument; ``world``
+        is the variable for it.
         """
         statements: list[AST] = []
         sources: list[Source] = []

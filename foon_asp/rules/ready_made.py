@@ -111,8 +111,7 @@ class ReadyMade:
     def upper_limits(self, problem: Problem, deadline: Deadline) -> Iterator[LinearRow]:
         """Yield the constraints that bound a sum of amounts of units from above, as rows.
 
-        A constraint that counts sets of several units is left out, since a row cannot count a set only once.
-        The deadline is not looked at.
+        A constraint is left out if it counts a set of several units only once. The deadline is not looked at.
         """
         for rule_meaning in self._meanings(problem)[0]:
             if rule_meaning.max_sum is not None and all(

@@ -90,7 +90,7 @@ class Rules:
 
     @cached_property
     def shown_rules(self) -> tuple["ShownRule", ...]:
-        """The rules as users see them; those of a ready-made constraint as in its file."""
+        """The rules as users see them; a rule of a ready-made constraint is shown as in its file."""
         texts: dict[int, str] = {}
         uses: dict[str, Stated] = {}
         for encoding in self._encodings:
@@ -208,7 +208,7 @@ class Rules:
     def restriction_of(
         self, problem: Problem, deadline: Deadline, units: Collection[int] | None = None
     ) -> Restriction | Contradiction | None:
-        """Return the restriction of a problem by the rules that remove units or require one of a set.
+        """Return the restriction of a problem by the rules that remove units or require a unit of a set.
 
         A tree keeps to these rules if and only if it has no removed unit, and a unit of each required set.
         Only ``units`` are considered, by default the units that can execute.

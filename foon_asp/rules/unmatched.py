@@ -160,10 +160,10 @@ class _Search:
         return self._values.matches(literal.signature[0], COLUMNS[literal.signature], wanted)
 
     def _argument_values(self, literal: Literal, bound: _Values) -> dict[int, Sequence[Symbol]]:
-        """Return the possible values of arguments, by position; arguments of unknown values are left out.
+        """Return the possible values of arguments, by position.
 
-        ``bound`` has the possible values of variables. An argument that may be an unset constant is left out,
-        too.
+        ``bound`` has the possible values of variables. An argument is left out if its values are unknown, or
+        if it may be an unset constant.
         """
         values_by_position: dict[int, Sequence[Symbol]] = {}
         for position, argument in enumerate(literal.arguments):
