@@ -622,7 +622,7 @@ def program_fault(
 ) -> InputError | UserError:
     """Return clingo's messages about a program as one error for the user.
 
-    If a message has a place, it is :class:`InputError`, with places and source lines. Otherwise it is
+    If a message has a place, the error is :class:`InputError`, with places and source lines. Otherwise it is
     :class:`UserError` with the text of the messages. Without messages, the text is ``otherwise``, that of
     clingo's exception. Of several messages about one place, only the first is kept. ``files`` are the files
     and texts of the program; source lines are looked up in them.

@@ -72,7 +72,7 @@ def source_line(source: Source) -> str:
 
 
 class _Token(NamedTuple):
-    """A token: its kind, which is a group name of ``_TOKEN``, its text, and its offset in the program."""
+    """A token: its kind (a group name of ``_TOKEN``), its text, and its offset in the program."""
 
     kind: str
     text: str
@@ -121,7 +121,8 @@ def _check_content(text: str, origin: str, file: Path | None, errors: list[Diagn
     """Append the errors of a text to ``errors``, and return the files that it may include.
 
     ``file`` is the file that has the text; a text without a file may include nothing. ``origin`` is its name
-    in messages. After a ``#script``, nothing is read. In a text with a zero character, only this is an error.
+    in messages. After a ``#script``, nothing is read. In a text with a zero character, only this character is
+    reported.
     """
     lines = text.split("\n")
 

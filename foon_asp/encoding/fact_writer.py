@@ -88,7 +88,7 @@ def write_facts(
 
     There is one line per unit and per object node. Units and object nodes have the numbers that users see.
     Facts ``kitchen/1`` are about the part of the kitchen that user rules see. Facts ``available/1`` are about
-    its other items.
+    the other items of the kitchen.
 
     ``scales`` have the weights of ``risk/2`` and ``cost/3``; without scales, ``rate/2``, ``risk/2`` and
     ``cost/3`` are omitted.
@@ -387,7 +387,7 @@ def write_exponents(problem: Problem, scales: Scales) -> str:
 def write_product(number: int, exponents: Mapping[int, int]) -> str:
     """Return facts ``_product(K,F,E)``: in product number K of rates, factor number F has the exponent E.
 
-    ``number`` is K; ``exponents`` has E by F. For an objective other than success, they are a
+    ``number`` is K; ``exponents`` has E by F. For an objective other than success, ``exponents`` is any
     :meth:`Scales.vector`, and E is its entry F.
     """
     return "".join(f"_product({number},{factor},{_check_int32(e)}).\n" for factor, e in exponents.items())
@@ -424,7 +424,7 @@ def write_for_sale(prices: Mapping[int, int], second_choices: Iterable[int]) -> 
 def write_found_list(number: int, items: Iterable[int]) -> str:
     """Return facts ``_found_list(K)`` and ``_on_list(K,O)``: a shopping list that is known.
 
-    A list that contains all its items is not found again. ``number`` is K; ``items`` are the numbers of its
+    No further list may contain all items of the known one. ``number`` is K; ``items`` are the numbers of its
     nodes.
     """
     return f"_found_list({number}).\n" + "".join(f"_on_list({number},{o}).\n" for o in items)
@@ -433,7 +433,7 @@ def write_found_list(number: int, items: Iterable[int]) -> str:
 def write_constraints(weights: Mapping[int, int], kept: Iterable[int]) -> str:
     """Return facts ``_constraint(C,Weight)``, the cost of dropping constraint C, and ``_kept(C)``.
 
-    Constraints are given by number. Those in ``kept`` may not be dropped.
+    Constraints are given by number. Constraints in ``kept`` may not be dropped.
     """
     facts = [f"_constraint({number},{_check_int32(weight)}).\n" for number, weight in weights.items()]
     return "".join([*facts, *(f"_kept({number}).\n" for number in kept)])

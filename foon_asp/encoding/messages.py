@@ -37,7 +37,7 @@ def listener(messages: list[str], max_kept: int = 1000) -> Callable[[MessageCode
 def refuse_messages(messages: list[str]) -> Iterator[None]:
     """Return a context that raises :class:`ProgramError` if clingo stops in its block, or leaves messages.
 
-    ``messages`` is the list to which a :func:`listener` adds them. It is looked at when the block ends.
+    ``messages`` is the list to which a :func:`listener` adds messages. It is looked at when the block ends.
     """
     try:
         yield

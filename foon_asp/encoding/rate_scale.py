@@ -64,7 +64,7 @@ def rate_scale(rates: Collection[Fraction]) -> RateScale:
 
     The scale of the weights is a power of ten by which all weights fit into 32 bits. It is at most 10^8,
     except where a rate next to 1 would weigh almost 0. The exponents are those of coprime factors of the
-    rates: two products of rates are equal if and only if their exponents add up to the same sums. Raises
+    rates. Two products of rates are equal if and only if their exponents add up to the same sums. Raises
     ``ValueError`` for a rate outside of (0, 1].
     """
     if not all(0 < rate <= 1 for rate in rates):

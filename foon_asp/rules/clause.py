@@ -62,8 +62,8 @@ class Literal(NamedTuple):
 class Test(NamedTuple):
     """A comparison, ``#true`` or ``#false`` in a body, with or without ``not``.
 
-    ``holds`` is its truth value. It is ``None`` if it depends on a variable, or on a term with an operation,
-    which is not evaluated here.
+    ``holds`` is the truth value. It is ``None`` if the comparison has a variable, or a term with an
+    operation.
     """
 
     ast: AST
@@ -99,8 +99,8 @@ class Guard(NamedTuple):
 class Aggregate(NamedTuple):
     """An aggregate in a body.
 
-    ``holds`` is its truth value if the guards alone decide it, as in ``#count { ... } < #sup``; otherwise
-    ``None``. ``negations``, the number of ``not`` before it, is 0, 1 or 2; ``holds`` takes them into account.
+    ``negations`` is the number of ``not`` before it: 0, 1 or 2. ``holds`` is the truth value, including any
+    ``not``. It is ``None`` unless the guards alone decide it, as in ``#count { ... } < #sup``.
     """
 
     function: AggregateFunction
@@ -124,7 +124,7 @@ class Clause(NamedTuple):
     """A rule without pools, taken apart.
 
     ``plain``: whether the rule is a constraint, or its head is one atom without negation, minus or choice.
-    ``head``: this atom; ``None`` for a constraint, and for a rule that is not plain.
+    ``head``: the head atom of a plain rule; ``None`` for a constraint, and for a rule that is not plain.
     ``head_elements``: the head atoms of a rule that is not plain, each with its condition.
     ``number``: a number for the rule; the clauses of a rule with pools have the same number.
     ``ast``: the syntax tree of the clause; its body has one node for each conjunct of ``body``.

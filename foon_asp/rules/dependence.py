@@ -283,10 +283,10 @@ class Dependence:
     def _of_guard(self, aggregate: Aggregate, guard: Guard, conditions: Monotonicity) -> Monotonicity:
         """Return the monotonicity that an aggregate would have with only the given guard.
 
-        ``conditions`` is the monotonicity of the conditions of the aggregate's elements. It is the result for
-        ``>`` and ``>=``. Its negation is the result for ``<`` and ``<=``, and for a count that equals 0. For
-        ``#min``, the directions are swapped. For any other ``=``, for ``!=``, and for a sum whose weights may
-        be negative, the result is ``BOTH``.
+        ``conditions`` is the monotonicity of the conditions of the aggregate's elements. With ``>`` and
+        ``>=``, the result is ``conditions``. With ``<`` and ``<=``, and for a count that equals 0, it is the
+        negation of ``conditions``. For ``#min``, the directions are swapped. For any other ``=``, for ``!=``,
+        and for a sum whose weights may be negative, the result is ``BOTH``.
         """
         operator, function = guard.comparison, aggregate.function
         if operator in {ComparisonOperator.Equal, ComparisonOperator.NotEqual}:

@@ -18,7 +18,10 @@ Value = str | int | None
 class Columns(NamedTuple):
     """Argument positions of a predicate, from 0, by type of argument.
 
-    ``units`` and ``objects`` have numbers of units and of object nodes, ``numbers`` other numbers.
+    ``units``: the arguments that are numbers of units.
+    ``objects``: the arguments that are numbers of object nodes.
+    ``numbers``: the arguments that are other numbers.
+    ``texts``: the arguments that are texts.
     """
 
     units: tuple[int, ...] = ()

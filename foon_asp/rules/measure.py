@@ -184,7 +184,7 @@ class _Evaluation:
     def _derive_costs(
         self, units: Iterable[int], statements: Iterable["Statement"]
     ) -> Sequence[tuple["Value", ...]]:
-        """Return the costs of units that clingo derives, as rows of world, measure, unit number and cost.
+        """Return the costs that clingo derives for units, as rows of world, measure, unit number and cost.
 
         The world is the number of the unit whose facts were used. Clingo runs in this process if the program
         is small, else in another one. Raises :class:`InputError` if clingo drops an instance of a rule.

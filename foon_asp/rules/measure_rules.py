@@ -437,7 +437,7 @@ class _Atoms(Transformer):
 def _is_nameless(rules: Sequence[_Atoms]) -> bool:
     """Whether rules compare units and object nodes for equality only.
 
-    It is inferred, from the facts and along variables, which arguments stand for units or object nodes.
+    From the facts and the variables of rules, it is inferred which arguments are units or object nodes.
     Return ``False`` if such an argument is a constant, or if its variable stands for both kinds. Return
     ``False`` also if its variable is compared otherwise, or is a cost.
     """

@@ -42,7 +42,7 @@ class ReadyMade:
     """Ready-made constraints of one question, which are evaluated without clingo.
 
     ``local``: ``True``, as the constraints read facts about the tree alone.
-    ``redundant``: ``False``, as a tree needs redundant units only where a required set demands them.
+    ``redundant``: ``False``, as only required sets, and no other constraints, can demand redundant units.
     ``unsettled``: whether some constraints are more than removals of units and required sets.
     ``shrinking``: whether all constraints are antimonotone: if a tree keeps to them, so does every subtree.
     ``constants``: the constants by name, as terms of clingo.
@@ -166,8 +166,9 @@ def _rules_with_values(
 ) -> tuple[Sequence[Rule], Mapping[str, str]] | None:
     """Return constraints with the values of their constants, and all constants as terms of clingo.
 
-    ``uses`` are the names of constraints, each with its constants. A use without own constants has ``shared``
-    there, the constants from settings. A list in one use, such as allergens, holds for all uses.
+    ``uses`` are pairs of a constraint's name and its constants. ``shared`` are the constants from settings; a
+    constraint without constants of its own is paired with them. A list in one use, such as allergens, holds
+    for all uses.
 
     Return ``None`` if a value is missing, or is not a plain text or number. Return ``None`` also if a setting
     in ``shared`` is not used.
