@@ -106,8 +106,8 @@ _ALLOWED = {
 class Translator:
     """Translator of rules to removals, at-least-one constraints or rows.
 
-    Each of its public methods for a translation returns ``None`` for a rule that cannot be translated so.
-    ``program`` has the clauses of all rules.
+    The methods ``removal``, ``at_least_one`` and ``row`` return ``None`` for a rule without such a
+    translation. ``program`` has the clauses of all rules.
     """
 
     def __init__(self, program: Sequence[Clause], constants: Constants, dependence: Dependence) -> None:

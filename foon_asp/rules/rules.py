@@ -82,9 +82,9 @@ class Rules:
         self.rules: tuple[Rule, ...] = self._analysis.rules
 
     def varying(self, varied: Collection[Signature]) -> "Rules":
-        """Return these rules as they are understood if the facts of some predicates may change.
+        """Return these rules, analysed for a question in which the facts of some predicates may change.
 
-        Such facts are derived by other rules, or differ from question to question.
+        Facts in ``varied`` are derived by other rules, or differ from question to question.
         """
         return Rules(self._encodings, self._constants, varied, self._endless)
 

@@ -19,7 +19,7 @@ class UnitAnswers(NamedTuple):
 
     ``restriction``: the removed units and the required sets; :class:`Contradiction` if no tree keeps to the
     rules.
-    ``weights``: by the number of a row, the weight of each unit by id.
+    ``weights``: for each row, given by its number, the weight of each unit by id.
     """
 
     restriction: Restriction | Contradiction
