@@ -129,8 +129,8 @@ def load(
 def _progress_counter(on_progress: OnProgress | None, total: int) -> Iterator[Callable[[int], None]]:
     """Yield a function for a ``with`` block that adds a number to the progress, and reports the sum.
 
-    At the end of the block, the progress is reported as complete, unless it was before or the block raised an
-    exception. ``total`` is 0 if it is unknown. Without ``on_progress``, nothing is reported.
+    At the end of a block without exception, the progress is reported as complete if it was not yet. ``total``
+    is 0 if it is unknown. Without ``on_progress``, nothing is reported.
     """
     done = 0
 
@@ -151,8 +151,8 @@ def _time_limit_context(
 ) -> contextlib.AbstractContextManager[object]:
     """Return a context that stops its ``with`` block at a time limit or by a token.
 
-    ``None`` for ``time_limit`` is no limit, and for both, the context does nothing. ``doing`` is the work for
-    messages. Raises :class:`UserError` for a time limit that is no number of seconds.
+    Without a time limit and a token, the context does nothing. ``doing`` is the work for messages. Raises
+    :class:`UserError` for a time limit that is no number of seconds.
     """
     if time_limit is None and cancel is None:
         return contextlib.nullcontext()
@@ -259,9 +259,9 @@ def _build_network(
 ) -> Network:
     """Build a network of units as callers write them; the source of a unit has its number, from 1.
 
-    A node that a unit lists several times is taken or made in as many copies, which are added to ``amounts``.
-    ``tell`` is called after each 100 units and at the end, with the number of units since the last call.
-    Raises :class:`UserError` for what is no unit.
+    If a unit lists a node several times, it takes or makes several copies of it, which are added to
+    ``amounts``. ``tell`` is called after each 100 units and at the end, with the number of units since the
+    last call. Raises :class:`UserError` for a value that is no unit.
     """
     builder, number, reported = NetworkBuilder(), 0, 0
     if isinstance(units, str | Mapping) or not isinstance(units, Iterable):
@@ -296,7 +296,7 @@ def _build_network(
 def _parse_nodes(names: object, number: int) -> Iterator[ObjectNode]:
     """Yield the inputs or the outputs of a unit as object nodes, from one name or several.
 
-    Names are in one-line notation, or nodes already. ``number`` names the unit in errors. Raises
+    Each name is a one-line notation or an object node. ``number`` is that of the unit, for errors. Raises
     :class:`UserError` for a name that is no valid notation.
     """
     node_names = [names] if isinstance(names, str | ObjectNode) else names
@@ -361,9 +361,10 @@ class Foon:
         return cls(Dataset.of(data).with_measures(problem.measures), "a problem")
 
     def close(self) -> None:
-        """Close the store, also for data varied from these; do nothing for data in memory.
+        """Close the store, also for data that :meth:`vary` made from these data.
 
-        What was read stays. To read more of a closed store raises :class:`UserError`.
+        Data in memory stay as they are, and so does what was read from the store. To read more of a closed
+        store raises :class:`UserError`.
         """
         self._dataset.close()
 
@@ -438,7 +439,7 @@ class Foon:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """The assumptions made while reading, with files and lines, also that no kitchen was given."""
+        """The assumptions made while reading, with files and lines; one may be that no kitchen was given."""
         advice = () if self._dataset.has_kitchen else (_NO_KITCHEN,)
         return (*self._dataset.remarks, *advice)
 
