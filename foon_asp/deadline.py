@@ -445,11 +445,10 @@ if hasattr(os, "register_at_fork"):
 
 
 class Watch:
-    """A context that interrupts its thread at a deadline, as ctrl-C would; a background thread polls the
-    deadline.
+    """A context that interrupts its thread at a deadline, as ctrl-C would.
 
-    The parameters are those of :meth:`Deadline.watched`. Ctrl-C at the very end of the block is raised as
-    ``KeyboardInterrupt``.
+    A background thread polls the deadline. The parameters are those of :meth:`Deadline.watched`. Ctrl-C at
+    the very end of the block is raised as ``KeyboardInterrupt``.
     """
 
     def __init__(self, deadline: Deadline, doing: str, late: bool, grace: bool) -> None:

@@ -83,7 +83,7 @@ def become_worker(read: Callable[[RawIOBase], T]) -> "tuple[queue.SimpleQueue[T]
     received: queue.SimpleQueue[T] = queue.SimpleQueue()
 
     def listen() -> None:
-        """Put each request into the queue; end the process at the end of standard input, and without memory."""
+        """Put each request into the queue; end the process at the end of standard input or without memory."""
         while True:
             try:
                 received.put(read(incoming))

@@ -77,7 +77,8 @@ class PythonProcess:
         """Kill the process and the processes that it has started, and close the pipes; return its exit code.
 
         If a signal killed the process, the code is minus the number of the signal. Each thread of the process
-        gets five seconds to end. Ctrl-C is deferred until then. A second call returns the same code.
+        gets five seconds to end. Ctrl-C is deferred while the process is killed. A second call returns the
+        same code.
         """
         with uninterrupted():
             if hasattr(os, "killpg") and not self._group_ended:
