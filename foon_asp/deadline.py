@@ -35,8 +35,8 @@ class _Pace(NamedTuple):
     """How long work may continue after a limit, and how often limits are checked.
 
     Attributes:
-        tolerance_seconds: The time from a limit until work is overdue and is interrupted; after a cancel, half
-            of this time. A longer time lets more work end with an answer; a shorter one ends work sooner.
+        tolerance_seconds: The time from a limit until work is overdue and is interrupted; after a cancel, it
+            is half as long. A longer time lets more work end with an answer; a shorter one ends work sooner.
         memory_tolerance_seconds: The time from the memory limit until work is overdue.
         grace_seconds: The least time for the last piece of work if it begins at a limit.
         poll_seconds: The time between two checks of the memory. With a longer time, the limit is overshot; a
