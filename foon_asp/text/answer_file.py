@@ -27,7 +27,7 @@ class ListedTree(NamedTuple):
     ``units``: the units in the order of the file, each with its source; ``None`` for an answer without a
     tree.
     ``numbers``: the ids U in the atoms ``use(U)`` of clingo's output. If there are any, ``units`` is empty.
-    ``goals``, ``status``, ``containers``, ``items``: the fields of an answer of foon-asp; empty for other files.
+    ``goals``, ``status``, ``containers``, ``items``: fields of an answer of foon-asp; empty for other files.
     ``wanted``: how many copies of each goal the answer wants; a goal without a stated number is missing.
     ``is_tree``: false for FOON without a comment ``# Task tree for:``. Such a file may be a network.
     ``amounts``: how many copies of nodes the units take and make, where this is not 1.
