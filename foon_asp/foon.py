@@ -76,14 +76,14 @@ def load(
         unit_amounts: The file with the numbers of copies that units take and make, instead of that of
             the folder.
         measures: Objectives of your own: files with rules for what units cost, or the rules themselves.
-        stand_ins: Whether available nodes may be used in place of those that cannot be made. ``True`` means
-            by the usual table of prices, with the changes of ``stand_ins.txt`` in the folder. A table means
-            by this one.
+        stand_ins: Whether available nodes may be used in place of those that cannot be made, and at which
+            prices. ``True`` means the usual table of prices, with the changes of ``stand_ins.txt`` in the
+            folder. A table of your own is used instead of the usual one.
         level: How object nodes are compared: by label (1), by label, states and relations (2), or by
             everything (3).
         lenient: Whether lines that are not understood are skipped, with a warning, instead of being errors.
         time_limit: Stop reading after this many seconds.
-        on_progress: Is called now and then with a :class:`Progress`, in bytes.
+        on_progress: Is called now and then with a :class:`Progress`, which counts bytes.
         cancel: A token that ends reading from another thread.
 
     Returns:
@@ -392,10 +392,10 @@ class Foon:
             items: ``lasting``, or ``used-up`` by the rule of docs/plans.md. The default is ``used-up`` if
                 amounts of goals are wanted, and ``lasting`` otherwise.
             stock: How many copies the kitchen has of some object nodes, by name, or the path of a stock
-                file. It takes precedence over the amounts of the kitchen; all other items never run out.
-                Only for items that are used up.
+                file. These numbers take precedence over the amounts of the kitchen. All other items never
+                run out. Only with items that are used up.
             stays: Exceptions from the rule, by label or object node: ``True`` if an item stays, ``False`` if
-                it is used up. Or the path of a file with such exceptions. Only for items that are used up.
+                it is used up. Or the path of a file with such exceptions. Only with items that are used up.
             amounts: How many copies of the goal are wanted; for several goals, a number for each, in order.
                 Without it, the amounts of the goals file count.
 
@@ -427,8 +427,8 @@ class Foon:
             adding: Names of object nodes to add to the kitchen.
             without: Names of object nodes to remove from the kitchen.
             rates: New success rates of some motions, above 0 and at most 1.
-            unit_prices: New prices, from 0, of motions by name and of single units; the price of a single
-                unit stays when that of its motion changes.
+            unit_prices: New prices, from 0, of motions by name and of single units. A single unit that has
+                a price of its own keeps it when the price of its motion changes.
             measures: All measures of your own: files with rules for what units cost, or the rules themselves.
 
         Raises:
