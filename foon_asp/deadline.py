@@ -316,15 +316,15 @@ class Deadline:
 
     @property
     def stopped(self) -> str | None:
-        """The limit that stopped the question, and the work that it stopped, in words.
+        """The limit that stopped the question, and the work that was stopped, in words.
 
-        An example is ``the time limit of 5 s while reading``. It is ``None`` if the question was not stopped.
+        An example is ``the time limit of 5 s while reading``. ``None`` if the question was not stopped.
         """
         return None if self._stopped_by is None else f"{self._stopped_by} while {self._doing}"
 
     @property
     def advice(self) -> str:
-        """A sentence of advice for the user about the limit; it depends on the work at that time."""
+        """A sentence of advice for the user about the limit; it depends on the work that was stopped."""
         return _ADVICE.get(self._doing, "raise the limit")
 
     def check(self) -> None:

@@ -90,7 +90,7 @@ def load(
         The data, from which problems are made.
 
     Raises:
-        UserError: for a file that is missing or cannot be read, or another level.
+        UserError: for a file that is missing or cannot be read, and for a level other than 1 to 3.
         StoppedError: if it was stopped.
 
     Example:
@@ -186,11 +186,11 @@ def build(
             with the keys ``motion``, ``inputs`` and ``outputs``, or a :class:`FunctionalUnit`. A node that a
             unit lists twice is taken or made twice if items are used up.
         kitchen: The available object nodes, by label, in one-line notation, or as :class:`ObjectNode`. A
-            dictionary has numbers of copies by such names, with ``None`` for what never runs out. Without
-            it, or as ``"@starting"``, whatever all units need in order to run is available. ``()`` means
-            that nothing is available.
-        goals: The object nodes to make, named like those of the kitchen. A dictionary has the numbers of
-            copies wanted. Without it, the goals are what the last unit makes and no unit needs.
+            dictionary maps such names to numbers of copies, or to ``None`` for what never runs out. Without
+            a kitchen, or with ``"@starting"``, whatever all units need in order to run is available. ``()``
+            means that nothing is available.
+        goals: The object nodes to make, named like those of the kitchen. A dictionary maps names to
+            the numbers of copies wanted. By default, they are what the last unit makes and no unit needs.
         rates: The success rates of motions, above 0 and at most 1.
         utensils: The labels of the utensils that the container rule ``implied`` is about.
         unit_prices: Prices, from 0, by the name of a motion or of single units.
@@ -322,7 +322,8 @@ class Foon:
     """A FOON, a kitchen, and the files that belong to them; a value that never changes.
 
     :func:`load` makes one. An object node is named in one-line notation or as an :class:`ObjectNode`. Its
-    label is enough if no other node has it, or for a goal, if only one entry of the goals file has it.
+    label is enough if no other node has the label. For a goal, the label is also enough if only one entry of
+    the goals file has it.
 
     A store stays open while questions may read from it. ``with load(...) as foon:`` closes it at the end, as
     :meth:`close` does; otherwise it is closed when nothing refers to the data any more.
@@ -423,7 +424,7 @@ class Foon:
 
         Parameters:
             kitchen: The available items: names, or a kitchen file as a :class:`~pathlib.Path`. A dictionary
-                has numbers of copies by name, with ``None`` for what never runs out.
+                maps names to numbers of copies, or to ``None`` for what never runs out.
             adding: Names of object nodes to add to the kitchen.
             without: Names of object nodes to remove from the kitchen.
             rates: New success rates of some motions, above 0 and at most 1.

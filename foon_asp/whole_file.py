@@ -139,7 +139,7 @@ def _create_locked_file(folder: Path) -> tuple[Path, BinaryIO]:
 
 @functools.cache  # once for each folder: fmt writes many files
 def _remove_leftovers(folder: Path) -> None:
-    """Remove the temporary files in a folder that no process has locked: their processes were killed.
+    """Remove the temporary files of killed processes from a folder: no process has them locked.
 
     A second call with the same folder does nothing. Errors are ignored.
     """

@@ -32,8 +32,8 @@ TaskFunctionMaker = Callable[[], Callable[[Task], Answer]]
 class LostError(Exception):
     """The process of a task died, or was killed at the time limit of the task.
 
-    ``code`` is its exit code, or minus the number of the signal that killed it. It is ``None`` after the time
-    limit; then ``is_late`` is true.
+    ``code`` is the exit code of the process, or minus the number of the signal that killed it. At the time
+    limit, it is ``None``, and ``is_late`` is true.
     """
 
     def __init__(self, code: int | None) -> None:

@@ -86,9 +86,10 @@ class Worker(PythonProcess):
         return kind, value
 
     def tell(self, request: bytes) -> None:
-        """Send a request without an answer; do nothing if the process has died.
+        """Send a request that has no answer; do nothing if the process has died.
 
-        The request has to be short enough for the buffer of the pipe. Otherwise this waits until it is read.
+        The request has to be short enough for the buffer of the pipe. Otherwise the call waits until the
+        process reads it.
         """
         write_if_open(self._to_process, request)
 

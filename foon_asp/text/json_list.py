@@ -239,8 +239,8 @@ class JsonFault(NamedTuple):
 def json_fault(error: json.JSONDecodeError) -> JsonFault:
     """Return the fault that the standard library found in a JSON text.
 
-    A comma before the end of a list or an object is reported at the comma in words of our own, since Python
-    versions report different places.
+    A comma before the end of a list or an object is always reported at the place of the comma. Python
+    versions differ in the place that they report.
     """
     text, offset, message = error.doc, error.pos, error.msg
     start = offset

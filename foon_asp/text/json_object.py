@@ -154,9 +154,10 @@ def check_keys(value: dict[str, object], allowed: set[str]) -> None:
 
 
 def key_and_value(value: dict[str, object], keys: tuple[str, ...]) -> tuple[str, object]:
-    """Return the one of ``keys`` that an object has, and its value; without any, the first key and ``None``.
+    """Return the key of an object that is among ``keys``, and its value.
 
-    Raises :class:`ValueError` if it has two of the keys.
+    If the object has none of the keys, return the first key and ``None``. Raises :class:`ValueError` if it
+    has two of the keys.
     """
     present_keys = [key for key in keys if key in value] or [keys[0]]
     if len(present_keys) > 1:
