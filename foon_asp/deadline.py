@@ -547,8 +547,8 @@ class Watch:
     def _is_woken_by_signals(self) -> bool:
         """Whether a signal interrupts the watched thread.
 
-        This is so if it is the main thread, ctrl-C raises ``KeyboardInterrupt`` there, and the system can
-        send signals to threads.
+        It has to be the main thread, in which ctrl-C raises ``KeyboardInterrupt``. The system has to be able
+        to send signals to threads.
         """
         return (
             self._thread == threading.main_thread().ident

@@ -24,8 +24,8 @@ def schema_name(kind: str) -> str:
 def json_text(value: object) -> str:
     """Return plain values as JSON with indents and a line end.
 
-    A list or an object that fits into about 95 letters stands on one line. So that line breaks do not depend
-    on folders, only the last part of an absolute path counts for the width.
+    A list or an object that fits into about 95 letters stands on one line. Of an absolute path, only the last
+    part counts for this width, so that line breaks do not depend on folders.
     """
     return _laid_out(value, "\n") + "\n"
 

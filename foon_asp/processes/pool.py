@@ -129,8 +129,8 @@ _Messages = SimpleQueue[tuple[int, _Message]]  # with the number of the process 
 def _next_message(workers: "dict[int, _Worker[Any]]", messages: _Messages) -> tuple[int, _Message]:
     """Wait for a message of any worker, and return it with the number of the worker.
 
-    If a worker exceeds the time of its task first, mark it as late, and return the message ``lost`` for it.
-    If a worker dies, its thread sends ``lost``.
+    If a worker exceeds the time of its task first, it is marked as late; the message returned for it is
+    ``lost``. If a worker dies, its thread sends ``lost``.
     """
     while True:
         worker_by_end = {

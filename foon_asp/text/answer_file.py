@@ -71,8 +71,8 @@ def read_listed_tree(file: Path, reader: FoonReader) -> ListedTree:
     In output of clingo, the last answer with units counts, since it is the best. Units of FOON are read by
     ``reader``, which records diagnostics and amounts.
 
-    Raises :class:`InputError` for errors in units of FOON. Raises :class:`UserError` for a missing file. It
-    is also raised for JSON of foon-asp that has no field for a tree, is of another version, or is not as
+    Raises :class:`InputError` for errors in units of FOON. Raises :class:`UserError` for a missing file, and
+    for JSON of foon-asp without a field for a tree, of another version, or of another form than
     ``docs/json.md`` describes.
     """
     if not file.exists():

@@ -30,9 +30,9 @@ class ListedClips(NamedTuple):
 def listed_clips(files: Iterable[Path], lenient: bool = False) -> Iterator[ListedClips]:
     """Yield the clips of each unit that has any.
 
-    Units without two times, such as assumed units, are skipped, and so are clips that do not end after their
-    begin. If ``lenient``, lines that are not understood are skipped. Otherwise they raise :class:`InputError`
-    after all units of their file have been yielded.
+    Units without two times, such as assumed units, are skipped. Clips that do not end after their begin are
+    skipped, too. If ``lenient``, lines that are not understood are skipped. Otherwise they raise
+    :class:`InputError` after all units of their file have been yielded.
     """
     for file in files:
         reader = FoonReader(lenient)

@@ -63,8 +63,8 @@ def lost_in_line(line: Line, converted: Line) -> list[Loss]:
 def lost_in_states(states: tuple[StateLine, ...], converted: tuple[StateLine, ...]) -> list[Loss]:
     """Return a loss for each part of the state lines of an object that the ``converted`` lines lack.
 
-    A missing relation, or a missing word of a relation, is only a loss. Raises :class:`CannotHoldError` if
-    the object would be read back with other states or ingredients, or with a relation to another object.
+    A missing relation, or a missing word of a relation, is only a loss. Other states or ingredients, and a
+    relation to another object, are a change of meaning: they raise :class:`CannotHoldError`.
     """
     ids = Counter(state.id for state in states if state.id) - Counter(state.id for state in converted)
     return [Loss.IDS] * ids.total() + _lost_attributes(states, converted)

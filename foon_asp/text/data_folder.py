@@ -67,14 +67,14 @@ class DataFiles(NamedTuple):
 class Data(NamedTuple):
     """All data read: the merged network and the data beside it.
 
-    ``kitchen``: the ids of the nodes that match ``kitchen_items``; without these, of the starting kitchen.
+    ``kitchen``: the ids of the nodes that match ``kitchen_items``; without items, of the starting kitchen.
     ``rates``: the success rates of motions; ``None`` without a rates file.
     ``warnings``: the assumptions made while reading.
     ``left_out``: the number of lines that were left out.
     ``unit_prices``: the prices of units; ``None`` without any price.
     ``starting``: true if the kitchen is the starting kitchen.
-    ``goals_from``: where the goals come from. It is empty for a file of goals, ``marked`` for the nodes
-    marked with ``!`` in the network, and ``last`` for outputs of the last unit of each file.
+    ``goals_from``: where the goals come from; empty if a file lists them. ``marked`` means nodes marked with
+    ``!`` in the network, and ``last`` means outputs of the last unit of each file.
     ``repeated``: the nodes that a unit lists twice.
     ``amounts``: how many copies of nodes units take and make, where this is not 1.
     """

@@ -40,7 +40,7 @@ def rename_in_json(text: str, renaming: "Renaming") -> str:
     """Return a JSON text in which ``renaming`` has replaced the name and, beside it, its id.
 
     Everything else stays as it is written. Raises :class:`UserError` if the word ``contains`` is to be
-    renamed and the text lists ingredients, since these are always read under this word.
+    renamed in a text that lists ingredients. Listed ingredients are always read under this word.
     """
     edits: list[tuple[int, int, str]] = []
     names = _json_names(text)

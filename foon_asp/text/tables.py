@@ -107,9 +107,9 @@ def _seconds(written: str, column: int) -> Fraction:
 
 
 def _tool_row(name: str, value: str, column: int) -> tuple[str | ObjectNode, int | None]:
-    """Return the tool of a row, as a label or a node, and how many there are, from 1 to 999,999.
+    """Return the tool of a row, as a label or a node, and the number of such tools.
 
-    For the word ``free``, the number is ``None``. Raises :class:`LineError` at a fault.
+    The number is from 1 to 999,999, or ``None`` for the word ``free``. Raises :class:`LineError` at a fault.
     """
     if value != "free" and not _TOOLS.fullmatch(value):
         raise LineError(column, repr(value), ("a number from 1", "free"))
@@ -184,7 +184,7 @@ def read_utensils(file: Path) -> frozenset[str]:
 
 
 def read_stock(file: Path) -> dict[ObjectNode, int]:
-    """Return how many copies of nodes there are, from a table, or from FOON text if it has an object line.
+    """Return the number of copies of each node in a table, or in FOON text if the file has an object line.
 
     In FOON text, an object block states its amount of copies, or else one copy. Copies of equal nodes are
     added up. Raises :class:`InputError` for a line of another form. It is also raised for a node with two

@@ -311,7 +311,7 @@ class TextUnits:
     def _warn_of_no_unit(self, section: "_Section") -> None:
         """Warn that the lines of a section are no unit, and count them as left out.
 
-        Nothing is done if an error is recorded already that explains why. If ``lenient``, faults are no
+        If an error that was recorded before explains this, nothing is done. If ``lenient``, faults are no
         errors, so the warning is always given.
         """
         if section.has_error and not self.reading.lenient:

@@ -43,7 +43,7 @@ class Table(NamedTuple, Generic[K, V]):
         """Return the first row of each name in a file; if ``text`` is given, it is read in place of the file.
 
         Blank lines and ``#`` comments are skipped. Raises :class:`InputError` with every line of another
-        form, and with every line that gives another value to a name than an earlier line.
+        form. It also has every line that gives a name another value than an earlier line.
         """
         rows_by_name: dict[K, Row[K, V]] = {}
 
