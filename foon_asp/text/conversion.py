@@ -38,9 +38,9 @@ class Converted(NamedTuple):
 class Converter:
     """A converter of any number of files to the dialect ``target``; equal names get equal ids in all of them.
 
-    A part that cannot be understood, or that the dialect cannot hold, is an error. If ``lenient``, it is left
-    out, with a warning in ``diagnostics``. But in a conversion from FOON text to FOON text, it stays
-    unchanged without a warning.
+    A part that cannot be understood, or that the dialect cannot hold, is an error. If ``lenient``, such a
+    part is left out, with a warning in ``diagnostics``. Only in a conversion from FOON text to FOON text, it
+    then stays unchanged, without a warning.
     """
 
     def __init__(self, target: Dialect, lenient: bool = False) -> None:

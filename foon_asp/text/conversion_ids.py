@@ -6,12 +6,10 @@ from foon_asp.text.line import Line, name_of
 class Numbering:
     """The ids of names; lines without an id get the id of their name.
 
-    There are three kinds of names. The first are labels of objects, the second motions. States, words of
-    relations and words of contents are the third.
-
-    A name keeps the first id that is learnt for it. A name without an id gets a new one. It is higher than
-    all ids of its kind, except ids of more than 15 digits. So all lines must be learnt before the first line
-    is numbered.
+    There are three kinds of names: labels of objects, motions, and words of state lines, such as ``chopped``
+    and ``in``. A name keeps the first id that is learnt for it. A name without an id gets a new one, which is
+    higher than all ids of its kind with up to 15 digits. So all lines must be learnt before the first line is
+    numbered.
     """
 
     def __init__(self) -> None:

@@ -107,13 +107,12 @@ def find_data(
     """Return the files of a question; a named file takes precedence over the folder's file of its kind.
 
     Without a folder and a network, the files are those of the bundled kitchen. A network without a folder
-    gets no bundled kitchen or rates, since these belong to the bundled network. A file that is named as a
-    kitchen or as other data is not read as a network of its folder.
+    gets no bundled kitchen or rates, since these belong to the bundled network.
 
-    A folder has its network in ``FOON.txt``. Without it, all other ``*.txt``, ``*.json`` and ``*.jsonl``
-    files are the network, except the following ones. It may have ``kitchen.json`` or ``kitchen.txt``,
-    ``motion.txt``, ``utensils.txt``, ``unit_prices.txt``, ``unit_amounts.txt``, ``stand_ins.txt``, and
-    ``goal_nodes.json`` or ``goal_nodes.txt``.
+    A folder has its network in ``FOON.txt``, or else in all files that :func:`network_files` returns. A file
+    that is named as a kitchen or as other data is no network. The folder may also have ``kitchen.json`` or
+    ``kitchen.txt``, ``motion.txt``, ``utensils.txt``, ``unit_prices.txt``, ``unit_amounts.txt``,
+    ``stand_ins.txt``, and ``goal_nodes.json`` or ``goal_nodes.txt``.
 
     Raises :class:`UserError` for a path that does not exist, and if there is no network file.
     """
@@ -162,9 +161,9 @@ def kitchen_file(folder: Path) -> Path | None:
 def network_files(path: Path) -> list[Path]:
     """Return the network files of a folder; for a path that is no folder, return the path itself.
 
-    If the folder has a file ``FOON.txt``, this is the only one. Otherwise all files that may be networks are
-    returned, sorted by name; kitchens, goals and tables are left out. Raises :class:`UserError` for a folder
-    without a network.
+    If the folder has a file ``FOON.txt``, only this file is returned. Otherwise all ``*.txt``, ``*.json`` and
+    ``*.jsonl`` files that may be networks are returned, sorted by name. Kitchens, goals and tables are left
+    out. Raises :class:`UserError` for a folder without a network.
     """
     if not path.is_dir():
         return [path]

@@ -79,8 +79,8 @@ class JsonWriter:
     def held_videos(self, videos: tuple[str, ...], comments: Sequence[str]) -> tuple[str, ...]:
         """Return ``videos`` if the written file can name them as its own, else an empty tuple.
 
-        The form has to have a key for videos. The comments have to name exactly these videos, and no copies
-        of units.
+        This needs a form with a key for videos. It also needs ``comments`` that name exactly these videos and
+        no copies of units.
         """
         named = tuple(video for video in map(read_video, comments) if video)
         return videos if not self._is_list and named == videos and not any(map(read_copy, comments)) else ()

@@ -157,10 +157,10 @@ def _mend_line(line: Line, written: str) -> str:
 
 
 def _rewrite_line(line: str, rewrite: Rewrite) -> tuple[str, LineError | None]:
-    """Return a line as ``rewrite`` writes it, and ``None``; or an unchanged line and its error.
+    """Return a line as ``rewrite`` writes it, and its error, which is ``None`` for most lines.
 
-    A line that cannot be understood has an error. Comments stay. Blanks are removed from blank lines and
-    behind ``//``.
+    A line that cannot be understood has an error, and stays unchanged. Comments stay, too. Blanks are removed
+    from blank lines and behind ``//``.
     """
     if line[:1] == "#":
         return line, None

@@ -144,7 +144,8 @@ class Writer(Protocol):
         """Return the text of a list of objects; ``parts`` are the texts of its objects."""
 
     def held_videos(self, videos: tuple[str, ...], comments: Sequence[str]) -> tuple[str, ...]:
-        """Return the ``videos`` that the written file can name; all units have these videos.
+        """Return the ``videos`` that the written file can name.
 
-        ``comments`` are the comment lines of the file that is converted.
+        ``videos`` are the source videos that all units share. ``comments`` are the comment lines of the file
+        that is converted.
         """

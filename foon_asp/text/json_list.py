@@ -131,7 +131,7 @@ class JsonList:
             raise
 
     def _expect(self, character: str, position: int, description: str = "") -> int:
-        """Return the position behind ``character``, which has to stand at ``position``, and behind blanks.
+        """Return the position behind ``character`` at ``position``, and behind the blanks after it.
 
         Raises :class:`JsonFaultError` if another character stands there; ``description`` is what was
         expected.

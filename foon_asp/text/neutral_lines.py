@@ -144,7 +144,7 @@ def _read_lines(file: Path) -> Iterator[str]:
 
 
 def _units_and_prices(lines: Iterable[str], file: str, reading: Reading) -> Iterator[tuple[ReadUnit, str]]:
-    """Yield the units in order, each with its price as an exact decimal text; it is empty without a price.
+    """Yield the units in order, each with its price: an exact decimal text, or an empty text.
 
     Faulty lines are recorded in ``reading`` and left out. Blank lines are skipped. A unit without outputs
     causes a warning.
@@ -173,7 +173,7 @@ class _NeutralFaultError(Exception):
 
 
 def _unit_and_price(line: str, source: Source, nodes: dict[str, ObjectNode]) -> tuple[ReadUnit, str]:
-    """Return the unit of a line, and its price as an exact decimal text; it is empty without a price.
+    """Return the unit of a line, and its price: an exact decimal text, or an empty text.
 
     ``nodes`` has the nodes read so far, by name; new nodes are added. Raises :class:`_NeutralFaultError` for
     a line of another form.
