@@ -123,7 +123,7 @@ def stoppable(seconds: float | None, token: Cancel | None, doing: str) -> Iterat
     The value of the context is the deadline of the block. Raises :class:`StoppedError` at once if the token
     was cancelled before, and otherwise when the block is interrupted. With ``seconds``, it is interrupted at
     the limit or as soon as the token is cancelled. Without ``seconds``, it is interrupted 0.75 seconds after
-    the cancel, so that it can first end with its incumbent. Ctrl-C is passed on.
+    the cancel; until then, its code can end with an incumbent. Ctrl-C is passed on.
     """
     if token is not None and token.cancelled:
         raise StoppedError("cancelled")
@@ -264,10 +264,10 @@ class Deadline:
     def overdue(self) -> bool:
         """Whether to stop even without an answer, since the time for ending with an answer is over.
 
-        This time is half a second after the time limit, a proof or ctrl-C; a quarter of a second after a
-        cancel; and 0.1 seconds after the memory limit. For the deadline of :func:`stoppable`, it is three
-        times as long, except after the memory limit. After a proof, ctrl-C or the memory limit, it begins
-        when this property is first read.
+        The time is half a second after the time limit, a proof or ctrl-C. After a cancel, it is a quarter of
+        a second; after the memory limit, 0.1 seconds. For the deadline of :func:`stoppable`, the times are
+        three times as long, except that after the memory limit. After a proof, ctrl-C or the memory limit,
+        the time begins when this property is first read.
         """
         if not self.passed:
             return False
@@ -318,7 +318,7 @@ class Deadline:
     def stopped(self) -> str | None:
         """The limit that stopped the question, and the work that was stopped, in words.
 
-        An example is ``the time limit of 5 s while reading``. ``None`` if the question was not stopped.
+        An example is ``the time limit of 5 s while reading``. It is ``None`` if the question was not stopped.
         """
         return None if self._stopped_by is None else f"{self._stopped_by} while {self._doing}"
 
@@ -369,7 +369,7 @@ class Deadline:
 
 @contextlib.contextmanager
 def resend_lost_interrupts() -> Iterator[None]:
-    """In a ``with`` block of the main thread, send each interrupt again that Python loses.
+    """Repeat interrupts that Python loses in a ``with`` block of the main thread.
 
     Python only reports an exception in a destructor, and does not raise it. So ctrl-C in a destructor has no
     effect, unless it is sent again. This works where the system can send signals to threads.

@@ -28,8 +28,8 @@ def read_object_list(file: Path, warnings: list[Diagnostic] | None = None) -> li
     "ingredients", "container", "amount"}``, of which only the label is required. Warnings are added to the
     list ``warnings``, if it is given.
 
-    Raises :class:`InputError` with the line and column of every entry of another form. It also has every
-    entry that is listed a second time with another amount.
+    Raises :class:`InputError` with the line and column of every faulty entry. An entry is also faulty if an
+    earlier entry lists the same object with another amount.
     """
     text = read_plain_text(file)
     format_ = JSON if file.suffix == JSON.list_suffix else format_of(text, str(file))

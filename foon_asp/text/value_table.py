@@ -42,8 +42,8 @@ class Table(NamedTuple, Generic[K, V]):
     def rows(self, file: Path, text: str | None = None) -> list[Row[K, V]]:
         """Return the first row of each name in a file; if ``text`` is given, it is read in place of the file.
 
-        Blank lines and ``#`` comments are skipped. Raises :class:`InputError` with every line of another
-        form. It also has every line that gives a name another value than an earlier line.
+        Blank lines and ``#`` comments are skipped. Raises :class:`InputError` with every faulty line. A line
+        is also faulty if it gives a name another value than an earlier line.
         """
         rows_by_name: dict[K, Row[K, V]] = {}
 
