@@ -47,7 +47,7 @@ _names: dict[str, str] = {}  # the modules of all public names, filled at the fi
 
 
 def modules_of_names() -> dict[str, str]:
-    """Return the module of each public name, relative to this package: ``questions.answer`` of ``Answer``.
+    """Return the module of each public name, relative to this package: ``questions.answer`` for ``Answer``.
 
     The dictionary is made at the first call, and shared by all callers.
     """
@@ -62,7 +62,7 @@ def modules_of_names() -> dict[str, str]:
 
 
 def __getattr__(name: str) -> object:
-    """Import the module of a public name, and return what has this name.
+    """Return the object with a public name, after importing its module.
 
     For ``__all__``, return the public names. Raises ``AttributeError`` for any other name.
     """

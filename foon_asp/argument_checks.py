@@ -50,8 +50,8 @@ def checker(
     It raises :class:`UserError` for a value that its annotation does not allow. It raises ``TypeError`` for
     arguments that do not fit the ``signature``, by default that of ``function``.
 
-    Default values are not checked. Annotations that are strings allow all values. Keys and values of mappings
-    are not checked, nor are items of iterators, since these can be read only once.
+    Annotations that are strings allow all values. Default values, keys and values of mappings, and items of
+    iterators are not checked.
     """
     expected_signature = signature or inspect.signature(function)
     annotations = {name: parameter.annotation for name, parameter in expected_signature.parameters.items()}
@@ -77,8 +77,8 @@ def _is_allowed(annotation: Any, value: object) -> bool:
     """Whether an annotation allows a value, as far as that can be checked at runtime.
 
     Only items of lists, tuples and sets are checked. A text does not count as several values. ``float``
-    allows integers, and neither ``float`` nor ``int`` allows ``True`` and ``False``. Annotations that are no
-    types, such as strings, allow all values.
+    allows integers. Neither ``float`` nor ``int`` allows ``True`` and ``False``. An annotation that is no
+    type, such as a string, allows all values.
     """
     origin, arguments = typing.get_origin(annotation), typing.get_args(annotation)
     if origin in {typing.Union, types.UnionType, typing.Annotated}:
@@ -98,7 +98,7 @@ def _is_allowed(annotation: Any, value: object) -> bool:
 
 
 def _is_of_several_values(origin: Any) -> bool:
-    """Whether an annotation, given by its origin, is of several values, such as ``Sequence``.
+    """Whether the origin of an annotation is a type with several values, such as ``Sequence``.
 
     A mapping counts as one value.
     """

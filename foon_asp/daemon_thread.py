@@ -1,6 +1,6 @@
 """Background threads without the locks of :mod:`threading`.
 
-An interrupt while a thread holds such a lock leaves it locked, and the next thread that takes the lock waits
+An interrupt while a thread holds such a lock leaves it locked. The next thread that takes the lock then waits
 forever. Operations of ``SimpleQueue`` are atomic, and cannot be interrupted.
 """
 

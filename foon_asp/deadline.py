@@ -35,15 +35,15 @@ class _Pace(NamedTuple):
     """How long work may continue after a limit, and how often limits are checked.
 
     Attributes:
-        tolerance_seconds: The time from a limit until work is overdue and is interrupted; half of it after a
-            cancel. With more, work may end with an answer; with less, it ends sooner.
-        memory_tolerance_seconds: The same time after the memory limit.
+        tolerance_seconds: The time from a limit until work is overdue and is interrupted; after a cancel, it
+            is half as long. A longer time lets more work end with an answer; a shorter one ends work sooner.
+        memory_tolerance_seconds: The time from the memory limit until work is overdue.
         grace_seconds: The least time for the last piece of work if it begins at a limit.
-        poll_seconds: The time between two checks of the memory. A longer time overshoots the limit, a shorter
-            one costs time.
-        max_interrupts: The greatest number of interrupts that are sent, since destructors lose some.
+        poll_seconds: The time between two checks of the memory. With a longer time, the limit is overshot; a
+            shorter one makes work slower.
+        max_interrupts: The greatest number of interrupts that are sent. Some are lost in destructors.
         interrupt_seconds: The time between two interrupts.
-        lost_polls: The number of polls until an interrupt counts as lost: a second in all.
+        lost_polls: The number of polls after which an interrupt counts as lost; together they take a second.
         handover_seconds: The time between two checks of whether another thread has sent its interrupt.
     """
 
@@ -73,9 +73,10 @@ class StoppedError(Exception):
 
 
 class Cancel:
-    """A token by which any thread can cancel the questions called with it; they end within a second.
+    """A token that is passed to questions, and by which any thread can cancel them within a second.
 
-    A question with an incumbent returns it, as at a time limit. Any other raises :class:`StoppedError`.
+    A cancelled question that has an incumbent returns it, as at a time limit. A cancelled question without an
+    incumbent raises :class:`StoppedError`.
 
     Example:
         >>> token = foon_asp.Cancel()
@@ -113,16 +114,16 @@ _CANCEL: ContextVar[Cancel | None] = ContextVar("cancel", default=None)
 
 @contextlib.contextmanager
 def stoppable(seconds: float | None, token: Cancel | None, doing: str) -> Iterator["Deadline"]:
-    """Limit the time of a ``with`` block, and cancel it by a token that its deadlines obey.
+    """Limit the time of a ``with`` block, and end it when its token is cancelled.
 
     ``seconds``: the time limit; ``None`` for no limit.
-    ``token``: the token; with ``None``, that of an outer block counts.
+    ``token``: the token, which all deadlines made in the block obey; ``None`` for that of an outer block.
     ``doing``: the work for messages, as in "while reading".
 
-    The context is the deadline of the block. :class:`StoppedError` is raised at once if the token was
-    cancelled before. Otherwise it is raised when the block is interrupted: with ``seconds``, at the limit or
-    as soon as the token is cancelled. Without ``seconds``, code that checks its deadline first has 0.75
-    seconds after a cancel to end with its incumbent. Ctrl-C is passed on.
+    The value of the context is the deadline of the block. Raises :class:`StoppedError` at once if the token
+    was cancelled before, and otherwise when the block is interrupted. With ``seconds``, it is interrupted at
+    the limit or as soon as the token is cancelled. Without ``seconds``, it is interrupted 0.75 seconds after
+    the cancel; until then, its code can end with an incumbent. Ctrl-C is passed on.
     """
     if token is not None and token.cancelled:
         raise StoppedError("cancelled")
@@ -152,8 +153,7 @@ def _stop_reason(stop: KeyboardInterrupt, deadline: "Deadline") -> str:
 class LimitError(KeyboardInterrupt):
     """A limit was reached, the question was cancelled, or ctrl-C was pressed, before any answer.
 
-    It is a ``KeyboardInterrupt``, so that code handles a limit like ctrl-C, and handlers of ``Exception`` do
-    not catch it.
+    It is a ``KeyboardInterrupt``. So handlers of ctrl-C also catch it, and handlers of ``Exception`` do not.
 
     ``stopped``: the limit and the work, in words.
     ``advice``: advice for the user.
@@ -262,12 +262,12 @@ class Deadline:
 
     @property
     def overdue(self) -> bool:
-        """Whether to stop even without an answer, since the time to end with one is over.
+        """Whether to stop even without an answer, since the time for ending with an answer is over.
 
-        This time is half a second after the time limit, a proof or ctrl-C. It is a quarter of a second after
-        a cancel, and 0.1 seconds after the memory limit. For the deadline of :func:`stoppable`, all but the
-        last are three times as long. After a proof, ctrl-C or the memory limit, the time begins when this
-        property is first read.
+        The time is half a second after the time limit, a proof or ctrl-C. After a cancel, it is a quarter of
+        a second; after the memory limit, 0.1 seconds. For the deadline of :func:`stoppable`, the times are
+        three times as long, except that after the memory limit. After a proof, ctrl-C or the memory limit,
+        the time begins when this property is first read.
         """
         if not self.passed:
             return False
@@ -286,7 +286,7 @@ class Deadline:
     def is_out_of_memory(self) -> bool:
         """Whether memory stopped the question: the memory limit, or an allocation that failed.
 
-        Then the current work may finish, but no other work is begun.
+        Then the current work may finish, but no other work begins.
         """
         return self._stopped_by is not None and self._stopped_by not in {
             self._time_limit_text,
@@ -316,7 +316,7 @@ class Deadline:
 
     @property
     def stopped(self) -> str | None:
-        """The limit that stopped the question, and the work that it stopped, in words.
+        """The limit that stopped the question, and the work that was stopped, in words.
 
         An example is ``the time limit of 5 s while reading``. It is ``None`` if the question was not stopped.
         """
@@ -324,7 +324,7 @@ class Deadline:
 
     @property
     def advice(self) -> str:
-        """A sentence of advice for the user about the limit; it depends on the work at that time."""
+        """A sentence of advice for the user about the limit; it depends on the work that was stopped."""
         return _ADVICE.get(self._doing, "raise the limit")
 
     def check(self) -> None:
@@ -355,10 +355,10 @@ class Deadline:
         self._counted_processes.discard(process)
 
     def watched(self, doing: str, late: bool = False, grace: bool = False) -> "Watch":
-        """Return a context that interrupts its block at the limits, for code that does not check them.
+        """Return a context that interrupts its ``with`` block at the limits.
 
-        It may raise :class:`LimitError` at the start, and anywhere in the block. So the block must be safe to
-        abort, and must not handle ctrl-C itself.
+        It is for code that does not check the limits itself. :class:`LimitError` may be raised at the start,
+        and anywhere in the block. So the block must be safe to abort, and must not handle ctrl-C itself.
 
         ``doing``: becomes the current work.
         ``late``: whether the block is interrupted only when it is overdue.
@@ -369,7 +369,7 @@ class Deadline:
 
 @contextlib.contextmanager
 def resend_lost_interrupts() -> Iterator[None]:
-    """Send interrupts again that Python loses in a ``with`` block of the main thread.
+    """Repeat interrupts that Python loses in a ``with`` block of the main thread.
 
     Python only reports an exception in a destructor, and does not raise it. So ctrl-C in a destructor has no
     effect, unless it is sent again. This works where the system can send signals to threads.
@@ -404,10 +404,9 @@ def resend_lost_interrupts() -> Iterator[None]:
 
 @contextlib.contextmanager
 def uninterrupted() -> Iterator[None]:
-    """Defer ctrl-C and interrupts of :class:`Watch` in a ``with`` block until its end.
+    """Defer ctrl-C and interrupts of :class:`Watch` until the end of a ``with`` block.
 
-    Several interrupts become one. In a thread that is not the main one, only interrupts of a watch are
-    deferred.
+    Several interrupts become one. Outside of the main thread, only interrupts of a watch are deferred.
 
     Imports need this: a C library that is interrupted during its import raises ``ImportError``, and cannot be
     imported any more.
@@ -446,10 +445,10 @@ if hasattr(os, "register_at_fork"):
 
 
 class Watch:
-    """A context in which a background thread polls a deadline and interrupts this thread as ctrl-C does.
+    """A context that interrupts its thread at a deadline, as ctrl-C would.
 
-    The parameters are those of :meth:`Deadline.watched`. Ctrl-C at the very end of the block leaves the
-    context as ``KeyboardInterrupt``.
+    A background thread polls the deadline. The parameters are those of :meth:`Deadline.watched`. Ctrl-C at
+    the very end of the block is raised as ``KeyboardInterrupt``.
     """
 
     def __init__(self, deadline: Deadline, doing: str, late: bool, grace: bool) -> None:
@@ -463,8 +462,8 @@ class Watch:
     def __enter__(self) -> Self:
         """Set the current work, and start the background thread if the question has any limit.
 
-        Raises :class:`LimitError` if the deadline has passed; with ``late``, only if it is overdue or memory
-        stopped the question. With ``grace``, nothing is raised here.
+        Without ``late``, raises :class:`LimitError` if the deadline has passed. With ``late``, raises it if
+        the deadline is overdue or memory stopped the question. With ``grace``, raises nothing.
         """
         deadline = self._deadline
         deadline.doing = self._doing
@@ -485,8 +484,8 @@ class Watch:
     ) -> None:
         """Stop the background thread; raises :class:`LimitError` if it has sent an interrupt.
 
-        An interrupt that was sent, and has not arrived, is awaited for up to a second. Any other interrupt is
-        ctrl-C: it stops the deadline, and is passed on.
+        If its interrupt has not arrived yet, this waits up to a second for it. An interrupt that the thread
+        has not sent is ctrl-C: it stops the deadline, and is passed on.
         """
         received = kind is not None and issubclass(kind, KeyboardInterrupt)
         while True:  # an interrupt may come within this loop, which can be repeated
@@ -516,17 +515,17 @@ class Watch:
     def _is_due(self) -> bool:
         """Whether to interrupt the block: the deadline has passed, or with ``late``, is overdue.
 
-        With ``grace``, it is false in the first quarter of a second of the block.
+        With ``grace``, the block is not interrupted in its first quarter of a second.
         """
         due = self._deadline.overdue if self._late else self._deadline.passed
         return due and time.monotonic() >= self._earliest
 
     def poll(self, interrupt_count: int) -> tuple[float, int] | None:
-        """Poll the deadline; if it is due, interrupt the thread. ``interrupt_count`` were sent before.
+        """Poll the deadline, and interrupt the thread if the deadline is due.
 
-        Interrupts are repeated, since some are lost, and postponed while the thread is in
-        :func:`uninterrupted`. Return the seconds until the next poll and the number of interrupts sent so
-        far. Return ``None`` after the last poll.
+        Interrupts are repeated, since some are lost. They are postponed while the thread is in
+        :func:`uninterrupted`. ``interrupt_count`` is the number of interrupts sent before. Return the seconds
+        until the next poll and the number of interrupts sent so far. Return ``None`` after the last poll.
         """
         if self._finished or interrupt_count == _PACE.max_interrupts:
             return None
@@ -548,8 +547,8 @@ class Watch:
     def _is_woken_by_signals(self) -> bool:
         """Whether a signal interrupts the watched thread.
 
-        This is so if it is the main thread, ctrl-C raises ``KeyboardInterrupt`` there, and the system can
-        send signals to threads.
+        It has to be the main thread, in which ctrl-C raises ``KeyboardInterrupt``. The system has to be able
+        to send signals to threads.
         """
         return (
             self._thread == threading.main_thread().ident
@@ -575,7 +574,7 @@ class Watch:
 def _poll_until_end(watching: "weakref.ref[Watch]", wake: "SimpleQueue[None]") -> None:
     """Poll a watch in the background until its end.
 
-    Polling also ends if the watch is garbage collected, because an interrupt prevented its end.
+    An interrupt can prevent the end of a watch. Then polling ends when the watch is garbage collected.
     """
     pause, interrupt_count = _PACE.poll_seconds, 0
     while True:
@@ -591,7 +590,7 @@ def _poll_until_end(watching: "weakref.ref[Watch]", wake: "SimpleQueue[None]") -
 
 
 def _resident_bytes(statm: Path) -> int:
-    """Return the resident memory of a process, in bytes, from its file in /proc; 0 after its end."""
+    """Return the resident memory of a process in bytes, read from its file in /proc; 0 if it has ended."""
     try:
         return int(statm.read_bytes().split()[1]) * _PAGE_BYTES
     except (OSError, IndexError):  # the process has ended
@@ -601,7 +600,7 @@ def _resident_bytes(statm: Path) -> int:
 def parse_seconds(number: float | str, quantity: str = "the time limit") -> float:
     """Return a number of seconds, at least 0, from a number or a text.
 
-    Raises :class:`UserError` for other values; ``quantity`` says in the message what they are.
+    Raises :class:`UserError` for other values; ``quantity`` names in the message what the seconds are.
     """
     try:
         value = float(number)
@@ -617,7 +616,7 @@ def parse_memory_size(number: int | str, quantity: str = "the memory limit") -> 
 
     Small letters and a following ``B`` or ``iB`` make no difference: ``500MiB``, ``500mb``.
 
-    Raises :class:`UserError` for other values, also 0; ``quantity`` says in the message what they are.
+    Raises :class:`UserError` for other values, also 0; ``quantity`` names in the message what the size is.
     """
     if isinstance(number, int) and not isinstance(number, bool) and number > 0:
         return number

@@ -21,7 +21,7 @@ class BugError(Exception):
 
 
 class FoonWarning(UserWarning):
-    """A warning about the data or a constraint, which the program uses nevertheless.
+    """A warning about data or a constraint that the program uses nevertheless.
 
     Example:
         >>> import warnings

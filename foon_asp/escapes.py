@@ -30,8 +30,8 @@ def escaped_lines(text: str, styled: bool = False) -> str:
     """Return a text of several lines with escapes for unsafe characters; line ends and tabs stay.
 
     A command of build logs, such as ``::error::`` or ``##[error]``, gets an escape within its beginning, so
-    that no log obeys it. A ``styled`` text keeps escape characters, for its colours, and carriage returns
-    before escape characters.
+    that no log obeys it. If ``styled``, escape characters stay, since colours need them. Carriage returns
+    before escape characters then stay, too.
     """
     shown = re.sub(_UNSAFE_BUT_ESCAPE, _escape_match, text) if styled else UNSAFE.sub(_escape_match, text)
     return re.sub(_COMMAND, _without_command, shown) if "::" in shown or "##" in shown else shown

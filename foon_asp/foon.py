@@ -76,21 +76,21 @@ def load(
         unit_amounts: The file with the numbers of copies that units take and make, instead of that of
             the folder.
         measures: Objectives of your own: files with rules for what units cost, or the rules themselves.
-        stand_ins: Whether available nodes may be used in place of nodes that cannot be made. ``True`` means
-            by the usual table of prices, with the changes of ``stand_ins.txt`` in the folder. A table means
-            by this one.
+        stand_ins: Whether available nodes may be used in place of nodes that cannot be made, and at which
+            prices. ``True`` means the usual table of prices, with the changes of ``stand_ins.txt`` in the
+            folder. A table of your own is used instead of the usual one.
         level: How object nodes are compared: by label (1), by label, states and relations (2), or by
             everything (3).
         lenient: Whether lines that are not understood are skipped, with a warning, instead of being errors.
         time_limit: Stop reading after this many seconds.
-        on_progress: Is called now and then with a :class:`Progress`, in bytes.
+        on_progress: Is called now and then with a :class:`Progress`, which counts bytes.
         cancel: A token that ends reading from another thread.
 
     Returns:
         The data, from which problems are made.
 
     Raises:
-        UserError: for a file that is missing or cannot be read, or another level.
+        UserError: for a file that is missing or cannot be read, and for a level other than 1 to 3.
         StoppedError: if it was stopped.
 
     Example:
@@ -129,8 +129,8 @@ def load(
 def _progress_counter(on_progress: OnProgress | None, total: int) -> Iterator[Callable[[int], None]]:
     """Yield a function for a ``with`` block that adds a number to the progress, and reports the sum.
 
-    At the end of the block, the progress is reported as complete, unless it was before or the block raised an
-    exception. ``total`` is 0 if it is unknown. Without ``on_progress``, nothing is reported.
+    At the end of a block without exception, the progress is reported as complete if it was not yet. ``total``
+    is 0 if it is unknown. Without ``on_progress``, nothing is reported.
     """
     done = 0
 
@@ -151,8 +151,8 @@ def _time_limit_context(
 ) -> contextlib.AbstractContextManager[object]:
     """Return a context that stops its ``with`` block at a time limit or by a token.
 
-    ``None`` for ``time_limit`` is no limit, and for both, the context does nothing. ``doing`` is the work for
-    messages. Raises :class:`UserError` for a time limit that is no number of seconds.
+    Without a time limit and a token, the context does nothing. ``doing`` is the work for messages. Raises
+    :class:`UserError` for a time limit that is no number of seconds.
     """
     if time_limit is None and cancel is None:
         return contextlib.nullcontext()
@@ -186,11 +186,11 @@ def build(
             with the keys ``motion``, ``inputs`` and ``outputs``, or a :class:`FunctionalUnit`. A node that a
             unit lists twice is taken or made twice if items are used up.
         kitchen: The available object nodes, by label, in one-line notation, or as :class:`ObjectNode`. A
-            dictionary has numbers of copies by such names, with ``None`` for what never runs out. Without
-            it, or as ``"@starting"``, whatever all units need in order to run is available. ``()`` means
-            that nothing is available.
-        goals: The object nodes to make, named like those of the kitchen. A dictionary has the numbers of
-            copies wanted. Without it, the goals are what the last unit makes and no unit needs.
+            dictionary maps such names to numbers of copies, or to ``None`` for what never runs out. Without
+            a kitchen, or with ``"@starting"``, whatever all units need in order to run is available. ``()``
+            means that nothing is available.
+        goals: The object nodes to make, named like those of the kitchen. A dictionary maps names to
+            the numbers of copies wanted. By default, they are what the last unit makes and no unit needs.
         rates: The success rates of motions, above 0 and at most 1.
         utensils: The labels of the utensils that the container rule ``implied`` is about.
         unit_prices: Prices, from 0, by the name of a motion or of single units.
@@ -259,9 +259,9 @@ def _build_network(
 ) -> Network:
     """Build a network of units as callers write them; the source of a unit has its number, from 1.
 
-    A node that a unit lists several times is taken or made in as many copies, which are added to ``amounts``.
-    ``tell`` is called after each 100 units and at the end, with the number of units since the last call.
-    Raises :class:`UserError` for what is no unit.
+    If a unit lists a node several times, it takes or makes several copies of it, which are added to
+    ``amounts``. ``tell`` is called after each 100 units and at the end, with the number of units since the
+    last call. Raises :class:`UserError` for a value that is no unit.
     """
     builder, number, reported = NetworkBuilder(), 0, 0
     if isinstance(units, str | Mapping) or not isinstance(units, Iterable):
@@ -296,7 +296,7 @@ def _build_network(
 def _parse_nodes(names: object, number: int) -> Iterator[ObjectNode]:
     """Yield the inputs or the outputs of a unit as object nodes, from one name or several.
 
-    Names are in one-line notation, or nodes already. ``number`` names the unit in errors. Raises
+    Each name is a one-line notation or an object node. ``number`` is that of the unit, for errors. Raises
     :class:`UserError` for a name that is no valid notation.
     """
     node_names = [names] if isinstance(names, str | ObjectNode) else names
@@ -322,7 +322,8 @@ class Foon:
     """A FOON, a kitchen, and the files that belong to them; a value that never changes.
 
     :func:`load` makes one. An object node is named in one-line notation or as an :class:`ObjectNode`. Its
-    label is enough if no other node has it, or for a goal, if only one entry of the goals file has it.
+    label is enough if no other node has the label. For a goal, the label is also enough if only one entry of
+    the goals file has it.
 
     A store stays open while questions may read from it. ``with load(...) as foon:`` closes it at the end, as
     :meth:`close` does; otherwise it is closed when nothing refers to the data any more.
@@ -361,9 +362,10 @@ class Foon:
         return cls(Dataset.of(data).with_measures(problem.measures), "a problem")
 
     def close(self) -> None:
-        """Close the store, also for data varied from these; do nothing for data in memory.
+        """Close the store, also for data that :meth:`vary` made from these data.
 
-        What was read stays. To read more of a closed store raises :class:`UserError`.
+        Data in memory stay as they are, and so does what was read from the store. To read more of a closed
+        store raises :class:`UserError`.
         """
         self._dataset.close()
 
@@ -391,10 +393,10 @@ class Foon:
             items: ``lasting``, or ``used-up`` by the rule of docs/plans.md. The default is ``used-up`` if
                 amounts of goals are wanted, and ``lasting`` otherwise.
             stock: How many copies the kitchen has of some object nodes, by name, or the path of a stock
-                file. It takes precedence over the amounts of the kitchen; all other items never run out.
-                Only for items that are used up.
+                file. These numbers take precedence over the amounts of the kitchen. All other items never
+                run out. Only with items that are used up.
             stays: Exceptions from the rule, by label or object node: ``True`` if an item stays, ``False`` if
-                it is used up. Or the path of a file with such exceptions. Only for items that are used up.
+                it is used up. Or the path of a file with such exceptions. Only with items that are used up.
             amounts: How many copies of the goal are wanted; for several goals, a number for each, in order.
                 Without it, the amounts of the goals file count.
 
@@ -422,12 +424,12 @@ class Foon:
 
         Parameters:
             kitchen: The available items: names, or a kitchen file as a :class:`~pathlib.Path`. A dictionary
-                has numbers of copies by name, with ``None`` for what never runs out.
+                maps names to numbers of copies, or to ``None`` for what never runs out.
             adding: Names of object nodes to add to the kitchen.
             without: Names of object nodes to remove from the kitchen.
             rates: New success rates of some motions, above 0 and at most 1.
-            unit_prices: New prices, from 0, of motions by name and of single units; the price of a single
-                unit stays when that of its motion changes.
+            unit_prices: New prices, from 0, of motions by name and of single units. A single unit that has
+                a price of its own keeps it when the price of its motion changes.
             measures: All measures of your own: files with rules for what units cost, or the rules themselves.
 
         Raises:
@@ -438,7 +440,7 @@ class Foon:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """The assumptions made while reading, with files and lines, also that no kitchen was given."""
+        """The assumptions made while reading, with files and lines; one may be that no kitchen was given."""
         advice = () if self._dataset.has_kitchen else (_NO_KITCHEN,)
         return (*self._dataset.remarks, *advice)
 

@@ -24,16 +24,16 @@ def schema_name(kind: str) -> str:
 def json_text(value: object) -> str:
     """Return plain values as JSON with indents and a line end.
 
-    A list or an object that fits into about 95 letters stands on one line. So that line breaks do not depend
-    on folders, only the last part of an absolute path counts for the width.
+    A list or an object that fits into about 95 letters stands on one line. Of an absolute path, only the last
+    part counts for this width, so that line breaks do not depend on folders.
     """
     return _laid_out(value, "\n") + "\n"
 
 
 def _laid_out(value: object, newline: str) -> str:
-    """Return a value as JSON, on one line if about 95 letters hold it, else with an element on each line.
+    """Return a value as JSON, on one line if it has at most about 95 letters.
 
-    ``newline`` is a line feed and the indent of the value.
+    Otherwise each element has its own line. ``newline`` is a line feed and the indent of the value.
     """
     inner = f"{newline}  "
     if isinstance(value, dict):
@@ -66,9 +66,9 @@ def json_line(value: object, default: Callable[[Any], object] | None = None) -> 
 def read_json(text: str | bytes, pairs: Callable[[list[tuple[str, Any]]], object] | None = None) -> Any:
     """Return the value of a JSON text.
 
-    ``pairs`` is a function that makes the objects from pairs of keys and values; ``None`` for plain
-    dictionaries. Raises :class:`ValueError` for any fault, also for lists nested too deeply and numbers too
-    long for Python.
+    ``pairs`` is a function that makes each object from its pairs of key and value; ``None`` for plain
+    dictionaries. Raises :class:`ValueError` for any fault. This includes lists nested too deeply and numbers
+    too long for Python.
     """
     try:
         return json.loads(text, object_pairs_hook=pairs)

@@ -31,12 +31,12 @@ def published_table() -> Path:
 
 
 def starter_recipe() -> Path:
-    """Return the path of the folder with an example recipe for a new data folder, and success rates."""
+    """Return the path of the folder with an example recipe and success rates for a new data folder."""
     return _folder_with_file("data", "starter/FOON.txt") / "starter"
 
 
 def bundled_vocabulary() -> Path:
-    """Return the path of the file of the names that lint knows."""
+    """Return the path of the file with the names that lint knows."""
     return _folder_with_file("data", "vocabulary.txt") / "vocabulary.txt"
 
 

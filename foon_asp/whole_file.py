@@ -96,10 +96,10 @@ def _replace(target: Path, content: bytes) -> None:
 def _staged_file(target: Path, content: bytes) -> Iterator[Path]:
     """Return a context with the path of a new file beside the target; the caller renames it to the target.
 
-    The file has the content, and the permissions of the target. At first, temporary files that killed
-    processes left in the folder are removed. At the end, the new file is removed if it was not renamed, and
-    a replaced file with other names or another owner is warned of. Raises :class:`OSError` for a target that
-    may not be written.
+    The new file has the given content and the permissions of the target. At first, temporary files of killed
+    processes are removed from the folder. At the end, the new file is removed if it was not renamed. A
+    warning is issued if the replaced target had other names or another owner. Raises :class:`OSError` for a
+    target that may not be written.
     """
     old_status = None
     if target.exists():
@@ -139,7 +139,7 @@ def _create_locked_file(folder: Path) -> tuple[Path, BinaryIO]:
 
 @functools.cache  # once for each folder: fmt writes many files
 def _remove_leftovers(folder: Path) -> None:
-    """Remove the temporary files in a folder that no process has locked: their processes were killed.
+    """Remove the temporary files of killed processes from a folder: no process has them locked.
 
     A second call with the same folder does nothing. Errors are ignored.
     """
@@ -152,7 +152,7 @@ def _remove_leftovers(folder: Path) -> None:
 def _remove_unlocked(file: Path) -> None:
     """Remove a temporary file, unless another process is writing it and so has locked it.
 
-    If files cannot be locked, or if this is no regular file, it stays.
+    If files cannot be locked, or if the path is no regular file, nothing is removed.
     """
     descriptor = os.open(file, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0))
     try:
@@ -165,7 +165,8 @@ def _remove_unlocked(file: Path) -> None:
 def _try_lock(descriptor: int, otherwise: bool) -> bool:
     """Lock an open file, given by its descriptor, and return whether this succeeded.
 
-    Return ``False`` if another process has locked it, and ``otherwise`` where files cannot be locked.
+    Return ``False`` if another process has locked the file. Return ``otherwise`` where files cannot be
+    locked.
     """
     if fcntl is None:
         return otherwise

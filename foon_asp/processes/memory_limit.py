@@ -6,8 +6,8 @@ import contextlib
 def limit_own_memory(size: int | None) -> None:
     """Limit the data segment of this process to ``size`` bytes; ``None`` removes the limit.
 
-    Do nothing if the system cannot, or if its own limit is lower. The parent process only polls the memory of
-    this process, and memory may grow too fast for that.
+    Nothing is done if the system cannot limit it, or if the system's own limit is lower. The parent process
+    only polls the memory of this process, and memory may grow too fast for that.
     """
     try:
         import resource  # noqa: PLC0415 (not on every system)

@@ -38,9 +38,9 @@ def write(pipe: RawIOBase, content: bytes) -> None:
 
 
 def write_if_open(pipe: RawIOBase, content: bytes) -> None:
-    """Write all of ``content``. Do nothing if the other end is closed.
+    """Write all of ``content``; do nothing if the other end is closed.
 
-    The thread that reads from the process also notices that it is closed.
+    The thread that reads from the other process notices its end as well, so nothing is raised here.
     """
     with contextlib.suppress(OSError, ValueError):
         write(pipe, content)
@@ -68,10 +68,12 @@ def receive_pickled(pipe: RawIOBase) -> bytes:
 def become_worker(read: Callable[[RawIOBase], T]) -> "tuple[queue.SimpleQueue[T], FileIO]":
     """Make this process a worker: return the queue of its requests, and the pipe for its answers.
 
-    A thread reads requests from standard input, each by ``read``, into the queue. It ends the process once
-    its parent has ended, even during a computation, and if memory runs out while it reads. Answers go to what
-    was standard output; anything else that this process prints goes to standard error. Standard input is
-    empty for all other code. Ctrl-C is ignored, since the parent handles it.
+    A thread reads requests from standard input by ``read``, and puts them into the queue. The thread ends the
+    process when the parent process has ended, even during a computation. It also does so if memory runs out
+    while it reads.
+
+    Answers go to what was standard output. Whatever else this process prints goes to standard error. Standard
+    input is empty for all other code. Ctrl-C is ignored, since the parent handles it.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     incoming, answers = FileIO(os.dup(0), "rb"), FileIO(os.dup(1), "wb")
@@ -81,7 +83,7 @@ def become_worker(read: Callable[[RawIOBase], T]) -> "tuple[queue.SimpleQueue[T]
     received: queue.SimpleQueue[T] = queue.SimpleQueue()
 
     def listen() -> None:
-        """Put each request into the queue; end the process when standard input ends, or without memory."""
+        """Put each request into the queue; end the process at the end of standard input or without memory."""
         while True:
             try:
                 received.put(read(incoming))

@@ -32,8 +32,8 @@ TaskFunctionMaker = Callable[[], Callable[[Task], Answer]]
 class LostError(Exception):
     """The process of a task died, or was killed at the time limit of the task.
 
-    ``code`` is its exit code, or minus the number of the signal that killed it. It is ``None`` after the time
-    limit; then ``is_late`` is true.
+    ``code`` is the exit code of the process, or minus the number of the signal that killed it. At the time
+    limit, it is ``None``, and ``is_late`` is true.
     """
 
     def __init__(self, code: int | None) -> None:
@@ -129,8 +129,8 @@ _Messages = SimpleQueue[tuple[int, _Message]]  # with the number of the process 
 def _next_message(workers: "dict[int, _Worker[Any]]", messages: _Messages) -> tuple[int, _Message]:
     """Wait for a message of any worker, and return it with the number of the worker.
 
-    If a worker exceeds the time of its task first, mark it as late and return the message ``lost`` for it. A
-    worker that died sends ``lost`` through its thread.
+    If a worker exceeds the time of its task first, it is marked as late; the message returned for it is
+    ``lost``. If a worker dies, its thread sends ``lost``.
     """
     while True:
         worker_by_end = {
@@ -150,10 +150,10 @@ class _Worker(PythonProcess, Generic[Task]):
     The constructor starts the process, and sends it the function and the first task.
 
     ``packed_maker``: the message with the function that makes the task function.
-    ``number``: identifies the process in ``messages``.
+    ``number``: the number of the process, which identifies it in ``messages``.
     ``messages``: the queue of the messages of all processes.
     ``end_by``: a time of the monotonic clock; ``None`` for no limit.
-    ``is_late``: whether it has exceeded this time.
+    ``is_late``: whether ``end_by`` has passed before the end of the task.
     """
 
     def __init__(self, packed_maker: bytes, task: Task, number: int, messages: _Messages) -> None:
@@ -206,7 +206,7 @@ def serve() -> None:
 def _make_task_function(pickled_maker: bytes) -> Callable[[Any], Any]:
     """Unpickle ``make_task_function`` and call it; return the function that does tasks.
 
-    If it raises an exception, return a function that raises this exception for every task.
+    If the call raises an exception, return a function that raises the exception for every task.
     """
     try:
         do_task: Callable[[Any], Any] = pickle.loads(pickled_maker)()
@@ -222,7 +222,7 @@ def _make_task_function(pickled_maker: bytes) -> Callable[[Any], Any]:
 def _answer_message(do_task: Callable[[Any], Any], task: bytes) -> bytes:
     """Do a pickled task; return the message ``done`` with its answer.
 
-    If it raises an exception, return the message ``raised`` with this exception.
+    If the task raises an exception, return the message ``raised`` with the exception.
     """
     try:
         return pack_message(("done", do_task(pickle.loads(task))))

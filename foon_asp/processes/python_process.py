@@ -27,10 +27,10 @@ _processes: "weakref.WeakSet[PythonProcess]" = weakref.WeakSet()
 
 
 class PythonProcess:
-    """A child process that runs ``serve`` of a module, which reads standard input and writes standard output.
+    """A child process that runs the function ``serve`` of a module.
 
-    It has the module search path of this process, and never outlives it. Ctrl-C at a terminal does not reach
-    it.
+    The function reads standard input and writes standard output. The process has the module search path of
+    this process, and never outlives it. Ctrl-C at a terminal does not reach it.
 
     ``module``: the name of the module.
     ``activity``: the beginning of the message if the path of Python is unknown, such as ``work is shared``.
@@ -76,8 +76,9 @@ class PythonProcess:
     def end(self) -> int:
         """Kill the process and the processes that it has started, and close the pipes; return its exit code.
 
-        The code is minus the number of the signal if a signal killed the process. Each of its threads gets
-        five seconds to end. Ctrl-C is deferred while the process ends. A second call returns the same code.
+        If a signal killed the process, the code is minus the number of the signal. Each thread of the process
+        gets five seconds to end. Ctrl-C is deferred while the process is killed. A second call returns the
+        same code.
         """
         with uninterrupted():
             if hasattr(os, "killpg") and not self._group_ended:
@@ -104,7 +105,7 @@ class PythonProcess:
     def abandon(self) -> None:
         """Close the pipes, but let the process run.
 
-        This is for a copy of this program made by fork: the process is a child of the original.
+        A copy of this program made by fork calls this, since the process is a child of the original program.
         """
         self._process.returncode = 0
         self._group_ended = True
@@ -118,13 +119,13 @@ class PythonProcess:
 
 
 def _end_all() -> None:
-    """Kill all processes, when this one ends."""
+    """Kill all child processes, when this process ends."""
     for process in list(_processes):
         process.end()
 
 
 def _abandon_all() -> None:
-    """Abandon all processes in a copy of this program made by fork: they are children of the original."""
+    """In a copy of this program made by fork, abandon all processes: they are children of the original."""
     for process in list(_processes):
         process.abandon()
 

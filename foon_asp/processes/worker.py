@@ -25,11 +25,11 @@ class DiedError(Exception):
 
 
 class Worker(PythonProcess):
-    """A process in which ``serve`` of a module answers the requests on its standard input.
+    """A process in which the function ``serve`` of a module answers requests from standard input.
 
     ``module``, ``activity``, ``options``, ``stderr``: as for :class:`PythonProcess`.
-    ``read``: reads a message from its output; by default, a message is a pickled kind and value.
-    ``has_spoken``: whether a message has come.
+    ``read``: reads a message of the process; by default, a message is a pickled pair of kind and value.
+    ``has_spoken``: whether the process has sent a message.
     """
 
     def __init__(
@@ -54,14 +54,14 @@ class Worker(PythonProcess):
     def ask(
         self, request: bytes, deadline: Deadline, handlers: Mapping[str, Callable[[Any], None]] | None = None
     ) -> Message:
-        """Send a request, and return the first message of a kind without handler: the answer.
+        """Send a request, and return the answer: the first message whose kind has no handler.
 
-        The values of messages before it, such as progress, are passed to the handler of their kind. The
+        Earlier messages, such as progress, have a handler for their kind, which is called with the value. The
         memory of the process counts towards the limit of ``deadline``.
 
-        Raises :class:`LimitError` at a limit and at ctrl-C, which stops the deadline. Raises
-        :class:`DiedError` if the process dies, and passes on what a handler raises. Each of them ends the
-        process. Raises :class:`BugError` for a process that is busy or was ended.
+        Raises :class:`LimitError` at a limit. Ctrl-C also stops the deadline and raises :class:`LimitError`.
+        Raises :class:`DiedError` if the process dies, and any exception of a handler. Each such exception
+        ends the process. Raises :class:`BugError` for a process that is busy or was ended.
         """
         if self._busy:
             raise BugError("a process was asked that had been ended")
@@ -86,9 +86,10 @@ class Worker(PythonProcess):
         return kind, value
 
     def tell(self, request: bytes) -> None:
-        """Send a request without an answer; do nothing if the process has died.
+        """Send a request that has no answer; do nothing if the process has died.
 
-        The request has to be short enough for the buffer of the pipe. Otherwise this waits until it is read.
+        The request has to be short enough for the buffer of the pipe. Otherwise the call waits until the
+        process reads it.
         """
         write_if_open(self._to_process, request)
 
@@ -114,7 +115,7 @@ class Worker(PythonProcess):
     def abandon(self) -> None:
         """Close the pipes, but let the process run.
 
-        This is for a copy of this program made by fork: the process is a child of the original.
+        A copy of this program made by fork calls this, since the process is a child of the original program.
         """
         self._busy = True
         super().abandon()
@@ -128,7 +129,7 @@ _idle: dict[Hashable, Any] = {}
 
 
 def take_worker(key: Hashable, start: Callable[[], W]) -> W:
-    """Return the idle worker of a key, which is then no longer idle.
+    """Return the idle worker that is kept for a key; it then is no longer idle.
 
     If the key has no idle worker, or if its worker has died, return a new one, which ``start`` starts.
     """
@@ -141,9 +142,9 @@ def take_worker(key: Hashable, start: Callable[[], W]) -> W:
 
 
 def give_back_worker(key: Hashable, worker: Worker) -> None:
-    """Make a worker the idle one of a key.
+    """Keep a worker as the idle one of a key.
 
-    Kill it if it is not ready, or if the key has another idle worker.
+    If the worker is not ready, or if the key has another idle worker, kill it instead.
     """
     if not worker.is_ready or _idle.setdefault(key, worker) is not worker:
         worker.end()

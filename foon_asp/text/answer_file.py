@@ -27,7 +27,7 @@ class ListedTree(NamedTuple):
     ``units``: the units in the order of the file, each with its source; ``None`` for an answer without a
     tree.
     ``numbers``: the ids U in the atoms ``use(U)`` of clingo's output. If there are any, ``units`` is empty.
-    ``goals``, ``status``, ``containers``, ``items``: the fields of an answer of foon-asp, else empty.
+    ``goals``, ``status``, ``containers``, ``items``: fields of an answer of foon-asp; empty for other files.
     ``wanted``: how many copies of each goal the answer wants; a goal without a stated number is missing.
     ``is_tree``: false for FOON without a comment ``# Task tree for:``. Such a file may be a network.
     ``amounts``: how many copies of nodes the units take and make, where this is not 1.
@@ -46,9 +46,9 @@ class ListedTree(NamedTuple):
     def with_units(self, file: Path, network: Callable[[], Network]) -> "ListedTree":
         """Return the tree with the units of its ``numbers``, each with its first source, and no numbers.
 
-        A tree without numbers is returned as it is. Otherwise ``network`` is called: it returns the network
-        whose ids the numbers are. Raises :class:`UserError` for a number that is no id of a unit; ``file``
-        is named in the message.
+        A tree without numbers is returned as it is. ``network`` is a function that returns the network in
+        which the numbers are ids of units. Raises :class:`UserError` for a number that is no id of a unit.
+        Its message names ``file``.
         """
         if not self.numbers:
             return self
@@ -68,10 +68,12 @@ class ListedTree(NamedTuple):
 def read_listed_tree(file: Path, reader: FoonReader) -> ListedTree:
     """Return the tree that a file lists: as FOON units in text or JSON, as an answer, or as atoms of clingo.
 
-    Of clingo's output, the last answer with units is read, which is the best. Units of FOON are read by
-    ``reader``, which records diagnostics and amounts. Raises :class:`InputError` for errors in them. Raises
-    :class:`UserError` for a missing file, and for JSON of foon-asp that has no field for a tree, is of
-    another version, or is not as ``docs/json.md`` describes.
+    In output of clingo, the last answer with units counts, since it is the best. Units of FOON are read by
+    ``reader``, which records diagnostics and amounts.
+
+    Raises :class:`InputError` for errors in units of FOON. Raises :class:`UserError` for a missing file, and
+    for JSON of foon-asp without a field for a tree, of another version, or of another form than
+    ``docs/json.md`` describes.
     """
     if not file.exists():
         raise UserError(f"{file}: no such file")
@@ -110,7 +112,7 @@ def _used_ids(text: str) -> tuple[int, ...]:
 def _foon_asp_document(text: str) -> Json | None:
     """Return a text's JSON object if it has a key ``schema`` or ``units``.
 
-    Return ``None`` for any other text, also for JSON with a fault.
+    Return ``None`` for any other text, and for JSON with a fault.
     """
     if not text.lstrip().startswith("{"):
         return None
@@ -138,14 +140,14 @@ def _answer_with_tree(document: Json) -> Json:
 
 
 def _executions(value: Json) -> Iterator[tuple[FunctionalUnit, Source]]:
-    """Yield the unit and the source of a step as often as its key ``times`` says, by default once."""
+    """Yield the unit of a step and its source as often as the step's key ``times`` says, by default once."""
     return repeat(_unit(value), int(value.get("times", 1)))
 
 
 def _unit(value: Json) -> tuple[FunctionalUnit, Source]:
-    """Return a unit and its first source from its JSON in an answer.
+    """Return a unit and its first source from the JSON of the unit in an answer.
 
-    Other JSON raises the errors that :func:`read_listed_tree` catches.
+    For JSON of another form, raises an error that :func:`read_listed_tree` reports, such as ``KeyError``.
     """
     inputs, outputs = (tuple(map(read_node_json, value[key])) for key in ("inputs", "outputs"))
     source = value["source"][0]

@@ -21,10 +21,10 @@ _LABEL = re.compile(r' *[^ ";\t\r\n\[\]{}][^;\t\r\n\[\]{}]*')
 
 
 def clean_line(text: str) -> Line | None:
-    """Return the parsed line of a text without line end, or ``None`` if the parser has to read it.
+    """Return the parsed line of a text without line end, or ``None`` if the parser has to read the text.
 
-    The parser has to read lines with faults and with most slips. Slips in ingredients, and a space for the
-    tab before a bracket, are read here; the line then has remarks.
+    The parser has to read lines with faults and with most slips. Only two kinds of slips are read here, with
+    remarks: slips in ingredients, and a space in place of the tab before a bracket.
     """
     if match := _STATE_LINE.fullmatch(text):
         return _matched_state_line(match)
@@ -68,8 +68,8 @@ def no_tab_remark(bracket: str, column: int) -> Remark:
 def split_ingredients(text: str, column: int, remarks: list[Remark]) -> tuple[str, ...]:
     """Return the ingredients in the text between brackets, split at commas and without spaces around them.
 
-    Empty ingredients are left out, repeated ones stay. ``column`` is that of the first letter of the text.
-    Adds to ``remarks`` at most one remark each on empty, on spaced and on repeated ingredients.
+    Empty ingredients are left out, repeated ingredients stay. ``column`` is that of the first letter of the
+    text. At most three remarks are added to ``remarks``: on empty, on spaced and on repeated ingredients.
     """
     raw_items = text.split(",")
     if len(set(raw_items)) == len(raw_items) and all(

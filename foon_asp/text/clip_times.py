@@ -15,7 +15,7 @@ _CLOCK = re.compile(r"\d+:\d\d(?::\d\d)?", re.ASCII)
 
 
 class ListedClips(NamedTuple):
-    """The clips of a unit, each as its begin and its end in seconds, with the unit's motion and sources."""
+    """The clips of a unit, each as its begin and end in seconds, with the motion and sources of the unit."""
 
     motion: str
     sources: tuple[Source, ...]
@@ -30,9 +30,9 @@ class ListedClips(NamedTuple):
 def listed_clips(files: Iterable[Path], lenient: bool = False) -> Iterator[ListedClips]:
     """Yield the clips of each unit that has any.
 
-    Units without two times, such as assumed ones, are skipped. So are clips whose end is not after their
-    begin. Lines that are not understood are skipped if ``lenient``; otherwise :class:`InputError` is raised
-    when the units of their file have been yielded.
+    Units without two times, such as assumed units, are skipped. Clips that do not end after their begin are
+    skipped, too. If ``lenient``, lines that are not understood are skipped. Otherwise they raise
+    :class:`InputError` after all units of their file have been yielded.
     """
     for file in files:
         reader = FoonReader(lenient)
@@ -55,7 +55,7 @@ def median_clips(files: Iterable[Path], lenient: bool = False) -> dict[str, Frac
 
 
 def _paired_clips(times: tuple[str, ...]) -> Iterator[tuple[int, int]]:
-    """Yield the begin and the end of each clip in seconds: of the first two times, then of the next two.
+    """Yield the begin and the end of each clip in seconds: the first two times, then the next two.
 
     A clip whose end is not after its begin is skipped.
     """

@@ -38,9 +38,9 @@ class Converted(NamedTuple):
 class Converter:
     """A converter of any number of files to the dialect ``target``; equal names get equal ids in all of them.
 
-    If ``lenient``, a part that cannot be understood, or that the dialect cannot hold, causes a warning in
-    ``diagnostics`` instead of an error. It is left out. In a conversion from FOON text to FOON text, it stays
-    unchanged, without a warning.
+    A part that cannot be understood, or that the dialect cannot hold, is an error. If ``lenient``, such a
+    part is left out, with a warning in ``diagnostics``. Only in a conversion from FOON text to FOON text, it
+    then stays unchanged, without a warning.
     """
 
     def __init__(self, target: Dialect, lenient: bool = False) -> None:
@@ -62,17 +62,17 @@ class Converter:
         return self._reading.left_out
 
     def learn(self, text: str) -> None:
-        """Record the ids in a text that will be converted: equal names get them, and new ids differ.
+        """Record the ids in a text that will be converted, so that new ids differ from them.
 
-        Has to be called with all texts before the first one is converted. Does nothing unless the target is
-        the dialect ``ids``.
+        A name with an id keeps it in all files. Call this with all texts before the first one is converted.
+        Nothing is done unless the target is the dialect ``ids``.
         """
         if self.target is Dialect.IDS:
             for line in format_of(text).lines(text):
                 self._numbering.learn(line)
 
     def convert(self, text: str, file: str) -> Converted:
-        """Return a converted text with the same functional units or listed objects, and what it has lost.
+        """Return a converted text with the same functional units or listed objects, and the losses.
 
         ``file`` is the name of the file in messages. JSON or neutral lines that are in the target dialect
         already are laid out anew. Raises :class:`InputError` with the places of all parts that cannot be
@@ -131,8 +131,8 @@ class Converter:
     def _converted_network(self, text: str, file: str, format_: Format, lost: "_Tally") -> str:
         """Return a network in the other dialect; losses are added to ``lost``.
 
-        A node that a unit lists twice is written once. Its amounts are added up if ``format_`` is a
-        machine-written format; otherwise the greatest of them counts. Units that the dialect cannot hold are
+        A node that a unit lists twice is written once. Its amount is the sum of both amounts if ``format_``
+        is a machine-written format, and otherwise the greater amount. Units that the dialect cannot hold are
         left out, and recorded as faults.
         """
         units = list(format_.listed_units(text, file, self._reading))
@@ -188,7 +188,7 @@ class Converter:
     def _kept_videos(
         self, text: str, format_: Format, units: list[ListedUnit], lost: "_Tally"
     ) -> tuple[str, ...]:
-        """Return the source videos that all units share and that the target can name.
+        """Return the source videos that all units share, if the target can name them.
 
         If the videos of two units differ, the result is empty. Lost comments and videos are added to
         ``lost``.
@@ -216,15 +216,15 @@ class _Tally:
         self.by_kind: dict[Loss, Lost] = {}
 
     def add(self, losses: list[Loss] | tuple[()], source: Source) -> None:
-        """Count losses at a place, and keep the first place in the file for each kind."""
+        """Count losses at a place; for each kind of loss, keep its first place in the file."""
         for loss in losses:
             count, first = self.by_kind.get(loss, (0, source))
             self.by_kind[loss] = Lost(count + 1, min(first, source))
 
     def add_comments(self, text: str, kept: tuple[str, ...]) -> None:
-        """Count the comments of a text as lost, except amounts and those that name ``kept`` videos.
+        """Count the comments of a text as lost, except amounts and names of ``kept`` videos.
 
-        Each counts as a video, as a copy that a unit was merged from, or as another comment.
+        The kind of loss is a video, a copy that a unit was merged from, or another comment.
         """
         for number, line in enumerate(split_lines(text), 1):
             if line[:1] == "#" and not is_amount(line) and read_video(line) not in kept:

@@ -4,12 +4,12 @@ from foon_asp.text.line import Line, name_of
 
 
 class Numbering:
-    """The ids of names, by which lines without an id get one.
+    """The ids of names; lines without an id get the id of their name.
 
-    There are three kinds of names: labels of objects; motions; and states, with words of relations and
-    contents among them. A name keeps the first id that is learnt for it. A name without an id gets a new
-    one, higher than all ids of its kind of up to 15 digits. So all lines must be learnt before the first line
-    is numbered.
+    There are three kinds of names: labels of objects, motions, and words of state lines, such as ``chopped``
+    and ``in``. A name keeps the first id that is learnt for it. A name without an id gets a new one, which is
+    higher than all ids of its kind with up to 15 digits. So all lines must be learnt before the first line is
+    numbered.
     """
 
     def __init__(self) -> None:

@@ -35,11 +35,11 @@ class Loss(StrEnum):
 
 
 class CannotHoldError(Exception):
-    """A part of a file that a dialect cannot hold, since it would be read back with another meaning."""
+    """A part of a file that a dialect cannot hold, since the part would be read back with another meaning."""
 
 
 def lost_in_line(line: Line, converted: Line) -> list[Loss]:
-    """Return a loss for each part of ``line`` that the ``converted`` line has not.
+    """Return a loss for each part of ``line`` that is missing in the ``converted`` line.
 
     Raises :class:`CannotHoldError` if the lines differ in meaning.
     """
@@ -63,15 +63,15 @@ def lost_in_line(line: Line, converted: Line) -> list[Loss]:
 def lost_in_states(states: tuple[StateLine, ...], converted: tuple[StateLine, ...]) -> list[Loss]:
     """Return a loss for each part of the state lines of an object that the ``converted`` lines lack.
 
-    A relation is not lost if the converted lines have it without its word, as a container. Raises
-    :class:`CannotHoldError` if the object would be read back with other states, relations or ingredients.
+    A missing relation, or a missing word of a relation, is only a loss. Other states or ingredients, and a
+    relation to another object, are a change of meaning: they raise :class:`CannotHoldError`.
     """
     ids = Counter(state.id for state in states if state.id) - Counter(state.id for state in converted)
     return [Loss.IDS] * ids.total() + _lost_attributes(states, converted)
 
 
 def _lost_fields(fields: tuple[str, ...], converted: tuple[str, ...]) -> Iterator[Loss]:
-    """Yield a loss for each field of an object line that the converted line has not.
+    """Yield a loss for each field of an object line that is missing in the converted line.
 
     A first field ``0`` or ``1`` is a motion flag, and a later number is a recipe category.
     """
@@ -89,9 +89,10 @@ def _lost_fields(fields: tuple[str, ...], converted: tuple[str, ...]) -> Iterato
 
 
 def _lost_times(fields: MotionFields, converted: MotionFields) -> Iterator[Loss]:
-    """Yield ``TIMES`` if the times of two motion lines differ, and ``RATES`` if entity or success rate do.
+    """Yield ``TIMES`` if the times of two motion lines differ, and ``RATES`` if other fields differ.
 
-    Times in one field, ``<0:14,0:20>``, do not differ from the same times in two fields.
+    Other fields are the entity and the success rate. Times in one field, ``<0:14,0:20>``, count as equal to
+    times in two fields.
     """
     if in_two_fields(fields.times) != in_two_fields(converted.times):
         yield Loss.TIMES
@@ -100,7 +101,7 @@ def _lost_times(fields: MotionFields, converted: MotionFields) -> Iterator[Loss]
 
 
 def _lost_attributes(states: tuple[StateLine, ...], converted: tuple[StateLine, ...]) -> list[Loss]:
-    """Return the losses of state lines, without those of ids; raises as :func:`lost_in_states` does.
+    """Return the losses of state lines, except lost ids; raises as :func:`lost_in_states` does.
 
     A repeated state may be left out without a loss. ``ORDER`` is lost if the kept lines are in another order.
     """
@@ -141,9 +142,9 @@ def _lost_attributes(states: tuple[StateLine, ...], converted: tuple[StateLine, 
 
 
 def _lost_relation(relation: Relation, extra: Counter[str | Relation | Contents]) -> Loss:
-    """Return the kind of loss of a relation that the converted lines have not.
+    """Return the kind of loss of a relation that is missing in the converted lines.
 
-    If they relate to the same object by another word, only the word is lost: return ``RELATION_WORDS``, or
+    If the converted lines relate to the same object by another word, return ``RELATION_WORDS``, or
     ``CONTAINERS`` for a relation without a word. Otherwise return ``RELATIONS``. ``extra`` counts the
     attributes that only the converted lines have; the relation by another word is removed from it.
     """
@@ -165,7 +166,7 @@ def _all_ingredients(attributes: list[str | Relation | Contents]) -> list[str]:
 def _kept_in_order(
     states: tuple[StateLine, ...], kept: Counter[str | Relation | Contents]
 ) -> list[tuple[object, tuple[str, ...]]]:
-    """Return the attributes that are ``kept``, each with its listed ingredients, in the order of lines."""
+    """Return the ``kept`` attributes in the order of lines, each with its ingredients as listed."""
     return [(state.attribute, state.listed) for state in states if state.attribute in kept]
 
 

@@ -67,14 +67,14 @@ class DataFiles(NamedTuple):
 class Data(NamedTuple):
     """All data read: the merged network and the data beside it.
 
-    ``kitchen``: the ids of the object nodes that match ``kitchen_items``, or of the starting kitchen.
+    ``kitchen``: the ids of the nodes that match ``kitchen_items``; without items, of the starting kitchen.
     ``rates``: the success rates of motions; ``None`` without a rates file.
     ``warnings``: the assumptions made while reading.
     ``left_out``: the number of lines that were left out.
     ``unit_prices``: the prices of units; ``None`` without any price.
     ``starting``: true if the kitchen is the starting kitchen.
-    ``goals_from``: empty if a file lists the goals; *marked* if they are the nodes marked with ``!`` in the
-    network; *last* if they are outputs of the last unit of each file.
+    ``goals_from``: where the goals come from; empty if a file lists them. ``marked`` means nodes marked with
+    ``!`` in the network, and ``last`` means outputs of the last unit of each file.
     ``repeated``: the nodes that a unit lists twice.
     ``amounts``: how many copies of nodes units take and make, where this is not 1.
     """
@@ -107,14 +107,14 @@ def find_data(
     """Return the files of a question; a named file takes precedence over the folder's file of its kind.
 
     Without a folder and a network, the files are those of the bundled kitchen. A network without a folder
-    gets no bundled kitchen or rates, since those belong to the bundled network. A file that is named as a
-    kitchen or as other data is not read as a network of its folder.
+    gets no bundled kitchen or rates, since these belong to the bundled network.
 
-    A folder has its network in ``FOON.txt`` or else in its other ``*.txt``, ``*.json`` and ``*.jsonl``
-    files. It may have ``kitchen.json`` or ``kitchen.txt``, ``motion.txt``, ``utensils.txt``,
-    ``unit_prices.txt``, ``unit_amounts.txt``, ``stand_ins.txt``, and ``goal_nodes.json`` or
-    ``goal_nodes.txt``. Raises :class:`UserError` for a path that does not exist, and without any network
-    file.
+    A folder has its network in ``FOON.txt``, or else in all files that :func:`network_files` returns. A file
+    that is named as a kitchen or as other data is no network. The folder may also have ``kitchen.json`` or
+    ``kitchen.txt``, ``motion.txt``, ``utensils.txt``, ``unit_prices.txt``, ``unit_amounts.txt``,
+    ``stand_ins.txt``, and ``goal_nodes.json`` or ``goal_nodes.txt``.
+
+    Raises :class:`UserError` for a path that does not exist, and if there is no network file.
     """
     if folder is None and not network:
         folder = bundled_kitchen()
@@ -161,8 +161,9 @@ def kitchen_file(folder: Path) -> Path | None:
 def network_files(path: Path) -> list[Path]:
     """Return the network files of a folder; for a path that is no folder, return the path itself.
 
-    These are ``FOON.txt`` alone, or without it all files that may be networks, by name. Kitchens, goals
-    and tables are left out. Raises :class:`UserError` for a folder without a network.
+    If the folder has a file ``FOON.txt``, only this file is returned. Otherwise all ``*.txt``, ``*.json`` and
+    ``*.jsonl`` files that may be networks are returned, sorted by name. Kitchens, goals and tables are left
+    out. Raises :class:`UserError` for a folder without a network.
     """
     if not path.is_dir():
         return [path]
@@ -178,8 +179,8 @@ def network_files(path: Path) -> list[Path]:
 def _may_be_network(file: Path) -> bool:
     """Whether a file of a folder may be a network, by its suffix and content; a hidden file is no network.
 
-    A ``*.txt`` file may have any content. JSON has to name an object, and a file with a suffix of neutral
-    files has to be of that format.
+    A ``*.txt`` file may have any content. A JSON text has to name an object. A file with a suffix of neutral
+    files has to be in the neutral form.
     """
     if file.name[0] == "." or not file.is_file():
         return False
@@ -194,10 +195,13 @@ def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:
     """Read the network and the data beside it, except ``stand_ins``.
 
     Without a kitchen file, the kitchen is the starting kitchen. Without a goals file, goals are assumed. If
-    ``lenient``, the lines of a network that are not understood are left out with a warning. Below ``level``
-    3, network, kitchen and goals are reduced to that level. An entry then matches all nodes that agree with
-    it in the remaining parts. Kitchen items, prices and amounts that match nothing in the network cause
-    warnings. Raises :class:`InputError` for other input that is not understood.
+    ``lenient``, the lines of a network that are not understood are left out with a warning.
+
+    Below ``level`` 3, network, kitchen and goals are reduced to that level. An entry of the kitchen or of
+    goals then matches all nodes that agree with it in what remains.
+
+    Kitchen items, prices and amounts that match nothing in the network cause warnings. Raises
+    :class:`InputError` for other input that is not understood.
     """
     with without_garbage_collection():
         reader = FoonReader(lenient)
@@ -252,15 +256,16 @@ def _assumed_goals(reader: FoonReader, network: Network) -> tuple[list[ListedObj
 def kitchen_nodes(network: Network, items: Iterable[ListedObject]) -> frozenset[int]:
     """Return the ids of the object nodes that match kitchen items.
 
-    Items are taken at the level of the network.
+    Items are first reduced to the level of the network.
     """
     return frozenset(o for item in items for o in network.find(pattern_at_level(item.pattern, network.level)))
 
 
 def amounts_of_items(names: NodeNames, items: Iterable[ListedObject]) -> dict[ObjectNode, int]:
-    """Return the amount of each node that matches an item with an amount; items without one are skipped.
+    """Return the amount of each node that matches an item with an amount.
 
-    Items are taken at the level of ``names``. If several items match a node, the last one counts.
+    Items without an amount are skipped. Items are first reduced to the level of ``names``. If several items
+    match a node, the last item counts.
     """
     return {
         names.node(o): item.amount
@@ -273,8 +278,8 @@ def amounts_of_items(names: NodeNames, items: Iterable[ListedObject]) -> dict[Ob
 def unit_prices(stated: StatedPrices, price_list: UnitPriceList | None) -> UnitPrices | None:
     """Return the prices of units; ``None`` if no file is given and no network states a price.
 
-    ``price_list`` has the prices of a file. They take precedence over those ``stated`` in networks. Raises
-    :class:`InputError` if copies of a unit state different prices and the list has none for the unit.
+    ``price_list`` has the prices of a file; they take precedence over the prices ``stated`` in networks.
+    Raises :class:`InputError` if copies of a unit state different prices and the file has none for the unit.
     """
     prices_of_file = price_list.units if price_list else {}
     price_by_unit = stated.price_by_unit(prices_of_file)
@@ -286,10 +291,10 @@ def unit_prices(stated: StatedPrices, price_list: UnitPriceList | None) -> UnitP
 def amounts_of_units(
     stated: StatedAmounts, file: Path | None, network: Network, warnings: list[Diagnostic]
 ) -> DataAmounts:
-    """Return the amounts that networks state for their units, overridden by those of the table in ``file``.
+    """Return the amounts that networks state for their units, overridden by the table in ``file``.
 
-    Appends to ``warnings`` a warning for each row of the table that matches no unit. ``file`` is ``None`` if
-    there is no table.
+    ``file`` is ``None`` if there is no table. A warning for each row that matches no unit is added to
+    ``warnings``.
     """
     stated_amounts = stated.amounts_by_unit(network)
     if file is None:

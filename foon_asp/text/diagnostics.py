@@ -38,8 +38,8 @@ class Diagnostic(NamedTuple):
 
     ``code`` is the name of the kind of remark. ``excerpt`` is the line of the file that the remark is about,
     without its line end, or empty. ``fix`` is the corrected line, ``None`` where no correction is known. A
-    fix changes nothing of what is read, unless it is ``unsafe``. ``rename`` is a correction in the whole
-    file, which always changes what is read.
+    fix does not change what is read, unless it is ``unsafe``. ``rename`` is a correction in the whole file,
+    which always changes what is read.
     """
 
     severity: Severity
@@ -85,9 +85,9 @@ class InputError(UserError):
 
 
 def brief_summary(diagnostics: Sequence[Diagnostic]) -> list[str]:
-    """Return the texts of :func:`summarize`; if they have more than six lines, return one line of counts.
+    """Return the texts of :func:`summarize` if they have at most six lines, otherwise one line of counts.
 
-    That line counts the diagnostics by code and names their files.
+    The line of counts has the number of diagnostics of each code, and names their files.
     """
     summary = summarize(diagnostics)
     if sum(1 + text.count("\n") for text in summary) <= 6:
@@ -101,9 +101,10 @@ def brief_summary(diagnostics: Sequence[Diagnostic]) -> list[str]:
 
 
 def summarize(diagnostics: Sequence[Diagnostic], max_lines: int = 5) -> list[str]:
-    """Return one text for all diagnostics of a file with the same code: the first in full, then their count.
+    """Return one text for all diagnostics of a file that have the same code.
 
-    Behind the count stand the line numbers of up to ``max_lines`` others.
+    The text has the first diagnostic in full, the number of diagnostics, and the line numbers of up to
+    ``max_lines`` others.
     """
     kinds: dict[tuple[str, str], list[Diagnostic]] = {}
     for diagnostic in diagnostics:

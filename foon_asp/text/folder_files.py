@@ -15,9 +15,9 @@ _JSON_KEY = re.compile(rb'"(?:input_nodes|object_label|label)"\s*:')
 
 
 class FolderFile(NamedTuple):
-    """A file in a named folder, and its path relative to this folder.
+    """A file, and its path relative to the named folder in which it was found.
 
-    For a file that was named itself, ``relative`` is its name.
+    If the file itself was named, ``relative`` is its name.
     """
 
     file: Path
@@ -48,9 +48,10 @@ def foon_files(paths: Iterable[Path]) -> list[FolderFile]:
 
 
 def _is_foon(file: Path, relative: Path) -> bool:
-    """Whether a file of a folder has a suffix and content of FOON; hidden files and folders are no FOON.
+    """Whether a file of a folder has a suffix and content of FOON.
 
-    Text in UTF-16 counts as FOON: reading it then reports the wrong encoding.
+    Hidden files, and files in hidden folders, are no FOON. Text in UTF-16 counts as FOON: reading it then
+    reports the wrong encoding.
     """
     if any(name[:1] == "." for name in relative.parts) or not file.is_file():
         return False

@@ -37,13 +37,14 @@ class FoonJson(Format):
     def dialect(self, text: str) -> Dialect:
         """Return the published form of a text.
 
-        It is ``JSON`` for an object, and for a list of objects with ``object_label``; else ``JSON_LIST``.
+        It is ``JSON`` if the text is an object, or if its object nodes have the key ``object_label``.
+        Otherwise it is ``JSON_LIST``.
         """
         by_its_name = any("object_label" in value for value in _objects_telling_form(text))
         return Dialect.JSON if by_its_name or text.lstrip(" \t\r\n")[0] == "{" else Dialect.JSON_LIST
 
     def lists_objects(self, text: str) -> bool:
-        """Whether the text is a list whose first value is a text, or an object without ``input_nodes``."""
+        """Whether the text is a list that begins with a text or with an object without ``input_nodes``."""
         first = next(iter(JsonList(text, Path())), None) if text.lstrip(" \t\r\n")[0] == "[" else None
         if first is None or not isinstance(first.value, dict | str):
             return False
@@ -85,8 +86,8 @@ class FoonJson(Format):
     def canonical_text(self, text: str, file: str, lenient: bool = False) -> str:
         """Return JSON laid out anew; a line end after the last bracket is neither added nor removed.
 
-        All lines get the most frequent line end. For a text that is not JSON, raises :class:`InputError`;
-        with ``lenient``, returns it unchanged.
+        All lines get the most frequent line end. A text that is not JSON raises :class:`InputError`. If
+        ``lenient``, it is returned unchanged instead.
         """
         try:
             check_json(text, file)
@@ -114,9 +115,10 @@ class FoonJson(Format):
 
 
 def _objects_telling_form(text: str) -> Iterator[dict[str, object]]:
-    """Yield the objects whose keys tell the form: the inputs of the first unit, or the first listed object.
+    """Yield the objects whose keys tell the form of a text, if there are any.
 
-    A text without such objects yields none.
+    In a text with units, they are the input nodes of the first unit. In a list of objects, it is the first
+    object.
     """
     first = next(iter(JsonList(text, Path(), "functional_units")), None)
     value = first.value if first else None

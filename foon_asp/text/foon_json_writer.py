@@ -62,34 +62,35 @@ class JsonWriter:
         return lay_out(text, self._level + 1), lost_in_line(line, read_back)
 
     def unit(self, inputs: Sequence[str], motion: str, outputs: Sequence[str], price: str) -> str:
-        """Return the JSON of a unit from that of its parts; ``price`` is empty for a unit without one."""
+        """Return the JSON of a unit from the JSON of its parts; without a price, ``price`` is empty."""
         return unit_text(inputs, motion, outputs, price, self._level)
 
     def network(self, units: Sequence[str], videos: Sequence[str]) -> str:
-        """Return the JSON of a file from that of its units.
+        """Return the JSON of a file from the JSON of its units.
 
         The form ``json-list`` leaves out ``videos``, for which it has no key.
         """
         return self.objects(units) if self._is_list else network_text(videos, units)
 
     def objects(self, parts: Sequence[str]) -> str:
-        """Return the JSON of a list from that of its values, with a line end."""
+        """Return the JSON of a list from the JSON of its values, with a line end."""
         return list_text(parts, 0) + "\n"
 
     def held_videos(self, videos: tuple[str, ...], comments: Sequence[str]) -> tuple[str, ...]:
         """Return ``videos`` if the written file can name them as its own, else an empty tuple.
 
-        It can if the form has a key for videos, and if the comments name exactly these videos and no copies
-        of units.
+        This needs a form with a key for videos. It also needs ``comments`` that name exactly these videos and
+        no copies of units.
         """
         named = tuple(video for video in map(read_video, comments) if video)
         return videos if not self._is_list and named == videos and not any(map(read_copy, comments)) else ()
 
 
 def with_container(block: ObjectBlock, pattern: NodePattern) -> ObjectBlock:
-    """Return a listed object with its container as a relation without a word, the last of its states.
+    """Return a listed object with its container as the last of its states.
 
-    An object whose pattern has no container is returned as it is.
+    The container becomes a relation without a word. An object whose pattern has no container is returned as
+    it is.
     """
     if pattern.container is None:
         return block
@@ -97,7 +98,7 @@ def with_container(block: ObjectBlock, pattern: NodePattern) -> ObjectBlock:
 
 
 def _read_back_object(text: str) -> ObjectBlock:
-    """Return the object that the JSON of an object in a list is read as.
+    """Return the object that is read from the JSON of an object in a list.
 
     Raises :class:`CannotHoldError` if it is read with an error.
     """
@@ -108,9 +109,10 @@ def _read_back_object(text: str) -> ObjectBlock:
 
 
 def _read_back_unit(node: str, motion: str) -> ListedUnit:
-    """Return the unit that is read from the JSON of a motion and of a node, which is its input and output.
+    """Return the unit that is read from the JSON of a motion and of a node.
 
-    Raises :class:`CannotHoldError` if it is read with an error.
+    The node is the only input and the only output. Raises :class:`CannotHoldError` if the unit is read with
+    an error.
     """
     text = f'[{{"input_nodes":[{node}],"motion_node":{motion},"output_nodes":[{node}]}}]'
     reading = Reading()
@@ -213,10 +215,10 @@ def motion_without_ids(line: MotionLine) -> str:
 
 
 def unit_text(inputs: Sequence[str], motion: str, outputs: Sequence[str], price: str, level: int) -> str:
-    """Return the JSON of a unit, laid out for nesting ``level``, from that of its parts.
+    """Return the JSON of a unit from the JSON of its parts, laid out for nesting ``level``.
 
-    The motion has to be laid out one level deeper, the objects two levels. ``price`` is a decimal text, empty
-    for a unit without a price.
+    The motion has to be laid out one level deeper, the objects two levels deeper. ``price`` is a decimal
+    text, empty for a unit without a price.
     """
     key_indent = "\n" + STEP * (level + 1)
     lists = (list_text(objects, level + 1) for objects in (inputs, outputs))
@@ -236,7 +238,10 @@ def network_text(videos: Sequence[str], units: Sequence[str]) -> str:
 
 
 def list_text(values: Sequence[str], level: int) -> str:
-    """Return the JSON of a list at nesting ``level`` from that of its values, laid out one level deeper."""
+    """Return the JSON of a list, laid out for nesting ``level``.
+
+    ``values`` are the JSON of its values, laid out one level deeper.
+    """
     if not values:
         return "[]"
     start = "\n" + STEP * (level + 1)
@@ -244,14 +249,17 @@ def list_text(values: Sequence[str], level: int) -> str:
 
 
 def _json_number(digits: str) -> object:
-    """Return digits as a number of JSON, or as a text if JSON has no such number; ``None`` without digits."""
+    """Return digits as a number of JSON; without digits, return ``None``.
+
+    Digits that are no number of JSON, such as ``007``, are returned as text.
+    """
     if not digits:
         return None
     return JsonNumber(digits) if _JSON_NUMBER.fullmatch(digits) else digits
 
 
 def _compact_json(value: object) -> str:
-    """Return plain values and numbers of ``JsonNumber`` as JSON without blanks."""
+    """Return a plain value as JSON without blanks; a ``JsonNumber`` in it is written as a number."""
     if isinstance(value, JsonNumber):
         return value.text
     if isinstance(value, dict):

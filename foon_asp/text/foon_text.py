@@ -147,9 +147,9 @@ def rewrite_lines(text: str, file: str, lenient: bool, rewrite: Rewrite) -> str:
 def _mend_line(line: Line, written: str) -> str:
     """Return the canonical form of a line.
 
-    A line whose only remarks are on blanks keeps the blanks within it, since the published universal FOON
-    has them: ``{jelly, peanut butter}``, and a space for the tab before a bracket. Linting reports such
-    blanks.
+    If all remarks on a line are about blanks, the line keeps the blanks within it. The published universal
+    FOON has such blanks: ``{jelly, peanut butter}``, and a space for the tab before a bracket. Linting
+    reports them.
     """
     if all(remark.code in _BLANKS for remark in line.remarks):
         return written.rstrip(" \t")
@@ -157,9 +157,9 @@ def _mend_line(line: Line, written: str) -> str:
 
 
 def _rewrite_line(line: str, rewrite: Rewrite) -> tuple[str, LineError | None]:
-    """Return a line as ``rewrite`` writes it, and ``None`` as its error.
+    """Return a line as ``rewrite`` writes it, and its error, which is ``None`` for most lines.
 
-    A line that cannot be understood is returned unchanged, with its error. Comments stay. Blanks are removed
+    A line that cannot be understood has an error, and stays unchanged. Comments stay, too. Blanks are removed
     from blank lines and behind ``//``.
     """
     if line[:1] == "#":

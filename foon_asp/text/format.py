@@ -38,10 +38,12 @@ class Dialect(StrEnum):
 class Format(Protocol):
     """A format of files, as the reader, ``fmt``, ``convert``, ``rename`` and ``lint`` use it.
 
-    ``dialects`` are its dialects. File names of its networks end with ``suffix``, those of its lists of
-    objects with ``list_suffix``. ``has_comments`` says whether files may have comments. If
-    ``machine_written``, a node that a unit lists twice means two copies of the node. The parameter ``file``
-    of most methods is the name of the file, by which messages name it.
+    ``dialects``: the dialects of the format.
+    ``suffix``, ``list_suffix``: the end of file names of networks, and of lists of objects.
+    ``has_comments``: whether files may have comments.
+    ``machine_written``: whether a node that a unit lists twice means two copies of the node.
+
+    The parameter ``file`` of most methods is the name of the file for messages.
     """
 
     dialects: tuple[Dialect, ...] = ()
@@ -66,8 +68,8 @@ class Format(Protocol):
     def units(self, text: str, file: str, reading: Reading) -> Iterator[ReadUnit]:
         """Yield the units of a text in order, without their lines.
 
-        They have amounts only if the format is ``machine_written`` or has a method of its own. The
-        diagnostics of the text are added to ``reading``.
+        The units have amounts if the format is ``machine_written``; other formats may replace this method.
+        The diagnostics of the text are added to ``reading``.
         """
         for unit in self.listed_units(text, file, reading):
             amounts = unit.amounts if self.machine_written else UnitAmounts()
@@ -111,8 +113,8 @@ WrittenPart = tuple[str, "list[Loss]"]
 class Writer(Protocol):
     """A writer of files in a dialect, part by part.
 
-    ``block`` and ``motion`` return the text of a part; ``unit``, ``network`` and ``objects`` put such texts
-    together. ``holds_prices`` says whether these files can hold prices of units, ``holds_no_inputs`` whether
+    ``block`` and ``motion`` return the text of a part. ``unit``, ``network`` and ``objects`` put such texts
+    together. ``holds_prices`` is true if the files can hold prices of units. ``holds_no_inputs`` is true if
     they can hold units without inputs.
     """
 
@@ -133,7 +135,7 @@ class Writer(Protocol):
         """
 
     def unit(self, inputs: Sequence[str], motion: str, outputs: Sequence[str], price: str) -> str:
-        """Return the text of a unit from those of its parts; ``price`` is empty for a unit without one."""
+        """Return the text of a unit from the texts of its parts; without a price, ``price`` is empty."""
 
     def network(self, units: Sequence[str], videos: Sequence[str]) -> str:
         """Return the text of a file from the texts of its units and from its source videos."""
@@ -142,7 +144,8 @@ class Writer(Protocol):
         """Return the text of a list of objects; ``parts`` are the texts of its objects."""
 
     def held_videos(self, videos: tuple[str, ...], comments: Sequence[str]) -> tuple[str, ...]:
-        """Return those of ``videos``, the videos of all units, that the written file can name.
+        """Return the ``videos`` that the written file can name.
 
-        ``comments`` are the comment lines of the file that is converted.
+        ``videos`` are the source videos that all units share. ``comments`` are the comment lines of the file
+        that is converted.
         """

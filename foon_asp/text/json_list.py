@@ -27,9 +27,9 @@ class JsonElement(NamedTuple):
 class JsonList:
     """The elements of a list in a JSON text; iterating reads them one by one.
 
-    Without ``key``, the list is the whole text. With ``key``, the list may also be the value of this key in
-    an object. The object's other values are in ``others`` once all elements have been read. Faults are
-    collected in ``errors``; ``file`` is the name of the file in their sources.
+    Without ``key``, the whole text has to be the list. With ``key``, the text may also be an object that has
+    the list under this key. Once all elements have been read, ``others`` has the other values of the object.
+    ``errors`` has the faults found so far; their sources name the ``file``.
     """
 
     def __init__(self, text: str, file: Path, key: str | None = None) -> None:
@@ -67,7 +67,7 @@ class JsonList:
         return Source(self._file, self._line, offset - self._text.rfind("\n", 0, offset))
 
     def _elements(self) -> Iterator[tuple[int, object]]:
-        """Yield each element of the list, or of the list in an object, with its offset in the text."""
+        """Yield each element of the list with its offset in the text."""
         start = self._skip_blanks(0)
         if self._key is not None and self._text[start : start + 1] == "{":
             yield from self._elements_under_key(start + 1)
@@ -76,10 +76,10 @@ class JsonList:
         self._expect_end(end)
 
     def _elements_under_key(self, position: int) -> Iterator[tuple[int, object]]:
-        """Yield the elements of the list under the key; values of other keys go to ``others``.
+        """Yield the elements of the list under the key, with offsets; other values go to ``others``.
 
-        ``position`` is the one after the opening bracket of the object. Raises :class:`JsonFaultError` for a
-        fault, also for an object without the key.
+        ``position`` is that behind the opening bracket of the object. Raises :class:`JsonFaultError` for a
+        fault, and for an object without the key.
         """
         seen: set[str] = set()
         position = self._skip_blanks(position)
@@ -106,7 +106,7 @@ class JsonList:
         self._expect_end(position + 1)
 
     def _list_elements(self, position: int) -> Generator[tuple[int, object], None, int]:
-        """Yield the elements of the list that begins at a position; return the position after the list."""
+        """Yield the elements of the list at a position, with offsets; return the position after the list."""
         position = self._expect("[", position, "a list, [ ... ]")
         is_first = True
         while self._text[position : position + 1] != "]":
@@ -121,7 +121,7 @@ class JsonList:
     def _value_at(self, position: int) -> tuple[object, int]:
         """Return the JSON value at a position, and the position after it; numbers are :class:`JsonNumber`.
 
-        Raises :class:`JsonFaultError` with this position for a repeated key, and
+        Raises :class:`JsonFaultError` for a repeated key, with the position of the value. Raises
         :class:`json.JSONDecodeError` for any other fault.
         """
         try:
@@ -131,9 +131,10 @@ class JsonList:
             raise
 
     def _expect(self, character: str, position: int, description: str = "") -> int:
-        """Return the position behind ``character`` and blanks; the character has to stand at ``position``.
+        """Return the position behind ``character`` at ``position``, and behind the blanks after it.
 
-        Raises :class:`JsonFaultError` where another one stands; ``description`` is what was expected.
+        Raises :class:`JsonFaultError` if another character stands there; ``description`` is what was
+        expected.
         """
         if self._text[position : position + 1] != character:
             raise self._unexpected(description or character, position)
@@ -148,9 +149,9 @@ class JsonList:
             )
 
     def _unexpected(self, expected: str, position: int) -> "JsonFaultError":
-        """Return the error that something else was expected at a position.
+        """Return the error that something else than ``expected`` stands at a position.
 
-        At the beginning of the text, it is the message of :func:`fault_before_json`, if there is one.
+        At the beginning of the text, the error has the message of :func:`fault_before_json`, if there is one.
         """
         if position == self._skip_blanks(0) and (message := fault_before_json(self._text)):
             return JsonFaultError(message, position)
@@ -173,7 +174,7 @@ class JsonNumber:
 
 
 class JsonFaultError(Exception):
-    """A fault of a JSON text that its decoder does not report, and its offset in the text."""
+    """A fault of a JSON text that the decoder of Python does not report, and its offset in the text."""
 
     def __init__(self, message: str, position: int) -> None:
         super().__init__(message)
@@ -238,8 +239,8 @@ class JsonFault(NamedTuple):
 def json_fault(error: json.JSONDecodeError) -> JsonFault:
     """Return the fault that the standard library found in a JSON text.
 
-    A comma before the end of a list or an object is reported at the comma in words of our own, since Python
-    versions report different places.
+    A comma before the end of a list or an object is always reported at the place of the comma. Python
+    versions differ in the place that they report.
     """
     text, offset, message = error.doc, error.pos, error.msg
     start = offset

@@ -25,7 +25,8 @@ _IDS = {NameKind.OBJECT: "object_id", NameKind.MOTION: "motion_id"}
 def json_mentions(text: str) -> Iterator[Mention]:
     """Yield every mention of a name in a JSON text.
 
-    A state with brackets, ``in [bowl]``, is a mention of its word, and one of each object in the brackets.
+    A state with brackets, ``in [bowl]``, has several mentions: of its word, and of each object in the
+    brackets.
     """
     for json_name in _json_names(text):
         state = read_line(f"S\t{json_name.name}") if _is_state_line(json_name) else None
@@ -39,7 +40,7 @@ def rename_in_json(text: str, renaming: "Renaming") -> str:
     """Return a JSON text in which ``renaming`` has replaced the name and, beside it, its id.
 
     Everything else stays as it is written. Raises :class:`UserError` if the word ``contains`` is to be
-    renamed and the text lists ingredients, since these are always read under this word.
+    renamed in a text that lists ingredients. Listed ingredients are always read under this word.
     """
     edits: list[tuple[int, int, str]] = []
     names = _json_names(text)
@@ -69,10 +70,11 @@ def rename_in_json(text: str, renaming: "Renaming") -> str:
 
 
 class _JsonName(NamedTuple):
-    """A name in JSON: the position of its quotes, and its id with the id's position, if there is one.
+    """A name in a JSON text, with its position, and with its id if it has one.
 
-    ``start`` and ``end`` are those of the name with its quotes. ``suffix`` is the text behind the name that
-    is no part of it: the ``*`` of a composite motion.
+    ``start``, ``end``: the position of the name with its quotes.
+    ``suffix``: the text behind the name that is no part of it: the ``*`` of a composite motion.
+    ``id_span``: the position of the id.
     """
 
     kind: NameKind
@@ -87,9 +89,11 @@ class _JsonName(NamedTuple):
 class _Level:
     """A list or an object while JSON is read.
 
-    ``owner`` is the key that it is under. ``key`` is the key whose value is read; in a list, it is the
-    ``owner``. ``names_before`` is the number of names that were read before it. ``lists_ingredients`` is true
-    for an object with ingredients. ``names`` and ``ids`` are those directly in it, each with its key.
+    ``owner``: the key whose value it is.
+    ``key``: the key whose value is being read; in a list, the ``owner``.
+    ``names_before``: the number of names that were read before it.
+    ``lists_ingredients``: true for an object with ingredients.
+    ``names``, ``ids``: the names and the ids directly in it, each with its key.
     """
 
     def __init__(self, owner: str, is_list: bool, names_before: int = 0) -> None:
@@ -140,8 +144,8 @@ def _json_names(text: str) -> list[_JsonName]:
 def _names_with_ids(level: _Level) -> Iterator[_JsonName]:
     """Yield the names directly in an object or a list, with the ids that stand beside them.
 
-    Only labels of objects, states and motions have ids; containers, related objects and ingredients have
-    none. A state beside a related object becomes the word of a relation.
+    The label of an object node, a state and a motion may have an id. Containers, related objects and
+    ingredients have none. A state beside a related object becomes the word of a relation.
     """
     related = any(key in _RELATED and not is_none(name.name) for key, name in level.names)
     for key, name in level.names:
@@ -172,7 +176,7 @@ def _is_state_line(json_name: _JsonName) -> bool:
 
 
 def _json_kind(level: _Level) -> NameKind | None:
-    """Return the kind of name that a text directly in ``level`` is, by its key; ``None`` if it is no name."""
+    """Return the kind of a name that is read directly in ``level``, by its key; ``None`` if it is no name."""
     key = level.key
     if key in {"motion_label", "motion_node", "id"}:
         return NameKind.MOTION

@@ -46,10 +46,12 @@ class JsonObject(NamedTuple):
 def read_object(value: object, keys: set[str] = KEYS) -> JsonObject:
     """Return the node of a JSON object, in either form; ``keys`` are the allowed keys.
 
-    States are names, also ``in [bowl]``, or objects with ``state_label`` and ``relative_object``. Listed
-    ingredients become contents with the word ``contains``, whether or not there is a state with this name. A
-    key without a value may be missing or null. As a container, related object, id or flag, an empty text and
-    ``"None"`` are no value, either. Raises :class:`ValueError` for a value of another form.
+    A state is a name such as ``whole`` or ``in [bowl]``, or an object with ``state_label`` and
+    ``relative_object``. Listed ingredients become contents with the word ``contains``, also without a state
+    of this name.
+
+    A key without a value may be missing or null. For a container, related object, id or flag, an empty text
+    and ``"None"`` also mean that there is no value. Raises :class:`ValueError` for a value of another form.
     """
     if not isinstance(value, dict):
         raise ValueError(f'found {excerpt_of(value)}, expected an object {{"label": ..., "states": [...]}}')
@@ -152,9 +154,10 @@ def check_keys(value: dict[str, object], allowed: set[str]) -> None:
 
 
 def key_and_value(value: dict[str, object], keys: tuple[str, ...]) -> tuple[str, object]:
-    """Return the one of ``keys`` that an object has, and its value; without any, the first key and ``None``.
+    """Return the key of an object that is among ``keys``, and its value.
 
-    Raises :class:`ValueError` if it has two of the keys.
+    If the object has none of the keys, return the first key and ``None``. Raises :class:`ValueError` if it
+    has two of the keys.
     """
     present_keys = [key for key in keys if key in value] or [keys[0]]
     if len(present_keys) > 1:
@@ -281,7 +284,7 @@ def _add_contents(states: list[StateLine], ingredients: tuple[str, ...]) -> list
 def _remarks_on_losses(
     value: dict[str, object], flag: str, category: str, ingredients: list[object]
 ) -> Iterator[str]:
-    """Yield messages on parts of an object that lines cannot hold, or that are unusual there.
+    """Yield messages on parts of an object that lines cannot hold, and on parts that are unusual in lines.
 
     ``flag``, ``category`` and ``ingredients`` are parts of the object ``value`` that have been read already.
     """
@@ -297,7 +300,7 @@ def _remarks_on_losses(
 
 
 def _ingredient_name(value: object) -> str:
-    """Return the name of an ingredient, without blanks around it, which may be empty.
+    """Return the name of an ingredient without blanks around it; the name may be empty.
 
     An ingredient that is an object is named by its label. Raises :class:`ValueError` for another value.
     """
@@ -333,5 +336,5 @@ def excerpt_of(value: object) -> str:
 
 
 def _plain_number(value: JsonNumber) -> object:
-    """Return a number as a value that Python writes as JSON; a number of 20 letters or more as text."""
+    """Return a number as a value that Python can write as JSON; from 20 letters on, this is a text."""
     return json.loads(value.text) if len(value.text) < 20 else value.text

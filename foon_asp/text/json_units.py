@@ -71,7 +71,10 @@ def _is_object(value: object) -> bool:
 
 
 def _videos(value: object) -> tuple[str, ...]:
-    """Return the addresses of the annotated videos from one address or a list; other values are skipped."""
+    """Return the addresses of the annotated videos; ``value`` is one address or a list of addresses.
+
+    Values that are no text are skipped.
+    """
     values = value if isinstance(value, list) else [value]
     return tuple(" ".join(video.split()) for video in values if isinstance(video, str) and video.strip())
 

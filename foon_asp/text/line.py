@@ -11,7 +11,7 @@ SLIPPED_FLAGS = {"00", "01"}
 
 
 class NameKind(StrEnum):
-    """The kind of a name: the label of an object, a state, the word of a relation or contents, or a motion.
+    """The kind of a name: an object's label, a state, a motion, or the word of a relation or of contents.
 
     Containers and ingredients are objects.
     """
@@ -89,8 +89,8 @@ class MotionLine(NamedTuple):
     """A line ``M54⇥pour*⇥1:10⇥1:11``: the motion of a unit.
 
     ``composite`` is true for a ``*`` after the motion, which stands for several motions annotated as one.
-    ``fields`` are the times and, where there is a success rate, the moving entity and this rate, as written.
-    No field is part of the unit.
+    ``fields`` are the times as written. If there is a success rate, the moving entity and the rate follow. No
+    field is part of the unit.
     """
 
     motion: str
@@ -125,7 +125,7 @@ def kind_of(line: Line) -> NameKind:
 def line_names(line: Line) -> Iterator[Mention]:
     """Yield a mention of each name in a line.
 
-    The first is that of :func:`name_of`, with the id of the line. All others are objects without an id.
+    The first is the name of :func:`name_of`, with the id of the line. All others are objects without an id.
     """
     yield Mention(kind_of(line), name_of(line), line.id)
     if isinstance(line, StateLine):

@@ -88,8 +88,8 @@ class _LineBuilder(Transformer[Token, object]):
     def plain(self, tokens: list[Token]) -> StateLine:
         """Return the state line of a name alone, or of a name and a text that is not in brackets.
 
-        Such a text is read as contents if it has a comma or follows ``contains``, else as the object of a
-        relation.
+        The text is read as contents if it has a comma or follows ``contains``. Otherwise it is read as the
+        object of a relation.
         """
         remarks: list[Remark] = []
         id_ = _id_after_letter(tokens[0], remarks)
@@ -142,9 +142,9 @@ class _LineBuilder(Transformer[Token, object]):
 
 
 def _bracketed_part(word: str, bracket: str) -> str | Relation | Contents:
-    """Return the relation, contents or state of a word and a bracket in one-line notation.
+    """Return the relation, contents or state that a word and a bracket mean in one-line notation.
 
-    Names in quotes are taken literally. Without such names, the bracket is read as on a state line.
+    A name in quotes is taken literally. If no name is in quotes, the bracket is read as on a state line.
     """
     written = [item.strip(" ") for item in _ITEM.findall(bracket[1:-1])]
     if not any(item.startswith('"') for item in written):
@@ -155,7 +155,7 @@ def _bracketed_part(word: str, bracket: str) -> str | Relation | Contents:
 
 
 def _remark_at(token: Token, code: str, message: str, offset: int = 0) -> Remark:
-    """Return a remark at the column ``offset`` letters behind the begin of a token."""
+    """Return a remark at the column that is ``offset`` letters behind the begin of a token."""
     return Remark((token.column or 1) + offset, code, message)
 
 
@@ -193,8 +193,8 @@ def _checked_flag_and_tag(
 ) -> tuple[str, ...]:
     """Return the fields after a label: a motion flag, then the category or the ``!`` of a goal.
 
-    The slips ``00`` and ``01`` of a flag are mended. Adds a remark for each slip, and for each field that is
-    neither a flag, a category nor ``!``.
+    The slips ``00`` and ``01`` of a flag are mended. Adds a remark for each slip. Also adds a remark for each
+    field that is no flag, category or ``!``.
     """
     field_tokens = [token for token in tokens[2:] if token.strip("\t ")]
     flag = fields[0]
@@ -246,9 +246,9 @@ def _without_end_spaces(token: Token, remarks: list[Remark]) -> str:
 def _bracketed_line(name: str, bracket: Token, id_: str, remarks: list[Remark]) -> StateLine:
     """Return the state line of ``word [object]`` or ``word {list}``.
 
-    A list in ``[]``, and anything in ``[]`` after the word ``contains``, is read as if it were in ``{}``.
-    With empty ``[]``, the word alone is a state, such as ``on``. A bracket that is not closed, or is closed
-    by one of the other kind, is read as if it were closed. Adds a remark for each slip.
+    After the word ``contains``, ``[]`` is read as ``{}``, and so is ``[]`` around a list. With empty ``[]``,
+    the word alone is a state, such as ``on``. A bracket without an end, or with the wrong end, is read as if
+    it were closed. Adds a remark for each slip.
     """
     closing = "]" if bracket[0] == "[" else "}"
     if bracket[-1] != closing or len(bracket) == 1:

@@ -34,7 +34,7 @@ class ObjectBlock(NamedTuple):
 class ReadUnit(NamedTuple):
     """A copy of a unit without its lines: motion, nodes in the order listed, sources and amounts.
 
-    ``sources`` has one entry. In a merged file, it has one for each copy that the unit was merged from.
+    ``sources`` has one entry. In a merged file, it has an entry for each copy that the unit was merged from.
     ``amounts`` has the nodes of which the copy takes or makes several.
     """
 
@@ -53,7 +53,7 @@ class ReadUnit(NamedTuple):
 class ListedUnit(NamedTuple):
     """A copy of a functional unit with its lines as read, nodes in the order listed.
 
-    ``sources`` has one entry. In a merged file, it has one for each copy that the unit was merged from.
+    ``sources`` has one entry. In a merged file, it has an entry for each copy that the unit was merged from.
     ``motion_source`` is the place of the motion. ``price`` is the price of this copy as written, or empty.
     """
 
@@ -71,7 +71,10 @@ class ListedUnit(NamedTuple):
 
     @property
     def amounts(self) -> UnitAmounts:
-        """The amounts above 1 of nodes on each side; those of a node that is listed twice are added up."""
+        """The amounts above 1 of nodes on each side.
+
+        If a node is listed twice, its amounts are added up.
+        """
         return counted_amounts(
             *([(block.node, block.amount or 1) for block in blocks] for blocks in (self.inputs, self.outputs))
         )
@@ -99,9 +102,10 @@ class ListedUnit(NamedTuple):
 def _merge_mentions(
     blocks: tuple[ObjectBlock, ...], combine: Callable[[Iterable[int]], int]
 ) -> tuple[ObjectBlock, ...]:
-    """Return the first block of each node; ``combine`` makes its amount from those of all its blocks.
+    """Return the first block of each node, with an amount for all blocks of the node.
 
-    Blocks without repeats are returned as they are.
+    ``combine`` makes this amount from the amounts of the blocks. Without repeated nodes, the blocks are
+    returned as they are.
     """
     mentions: dict[ObjectNode, list[ObjectBlock]] = {}
     for block in blocks:
@@ -115,7 +119,7 @@ def _merge_mentions(
 
 
 def node_of(label: str, attributes: Iterable[str | Relation | Contents]) -> ObjectNode:
-    """Return the node of a label and attributes: its states, relations and contents."""
+    """Return the node that has a label and attributes, which are states, relations and contents."""
     states: list[str] = []
     relations: list[Relation] = []
     contents: list[Contents] = []

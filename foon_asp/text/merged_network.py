@@ -16,9 +16,10 @@ def merged_text(network: Network, comment: str, amounts: Amounts = MappingProxyT
 
     Above each unit stands a line ``# From:`` for every copy of the unit, with file, line and videos. A copy
     that was read twice, from a file and from a merge of that file, is listed once. The text is read back as
-    the same network with the same ``amounts`` and sources, but without the columns of sources. Raises
-    :class:`UserError` for a name of the network or of a file that a line of text cannot hold, and for a unit
-    without inputs.
+    the same network with the same ``amounts``. Its sources are the same except for their columns.
+
+    Raises :class:`UserError` for a name of the network or of a file that a line of text cannot hold. It is
+    also raised for a unit without inputs.
     """
     blocks = list(map(write_node, network.objects))
     motions = {motion: write_motion(motion) for motion in dict.fromkeys(network.motions)}

@@ -47,8 +47,8 @@ class MotionFields(NamedTuple):
     def of(cls, fields: tuple[str, ...]) -> "MotionFields":
         """Return the fields of a motion line by their meaning.
 
-        If the last field is a success rate and the one before it is no time, these two are rate and entity.
-        All other fields are times.
+        If the last field can be a success rate and the one before it is no time, they are success rate and
+        entity. All other fields are times.
         """
         if len(fields) > 1 and is_rate(fields[-1]) and not is_time(fields[-2]):
             return cls(fields[:-2], fields[-2], fields[-1])

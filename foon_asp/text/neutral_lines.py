@@ -32,7 +32,7 @@ _KEYS = {*_NEEDED, "price"}
 
 
 class NeutralLines(FoonJson):
-    """The neutral form, of which each line is read on its own."""
+    """The neutral form, in which each line is a unit and is read on its own."""
 
     dialects = (Dialect.NEUTRAL,)
     suffix = NEUTRAL_SUFFIXES[0]
@@ -107,14 +107,14 @@ class NeutralLines(FoonJson):
         return json_mentions(text)
 
     def writer(self, target: Dialect, numbering: "Numbering") -> Writer:
-        """Return a writer of networks, and of lists of their names; ``numbering`` is not used."""
+        """Return a writer of networks and of lists of objects; ``numbering`` is not used."""
         from foon_asp.text.neutral_writer import NeutralWriter  # noqa: PLC0415 (only for conversions)
 
         return NeutralWriter()
 
 
 def _record_prices(units: Iterable[tuple[ReadUnit, str]], reading: Reading) -> Iterator[ReadUnit]:
-    """Yield the units, and record their prices in ``reading``; of equal units, the cheapest one counts."""
+    """Yield the units, and record their prices in ``reading``; if units are equal, the least price counts."""
     cached_read_price = cache(read_price)
     for unit, price in units:
         if price:
@@ -144,7 +144,7 @@ def _read_lines(file: Path) -> Iterator[str]:
 
 
 def _units_and_prices(lines: Iterable[str], file: str, reading: Reading) -> Iterator[tuple[ReadUnit, str]]:
-    """Yield the units in order, each with its price as an exact decimal text, empty for a unit without one.
+    """Yield the units in order, each with its price: an exact decimal text, or an empty text.
 
     Faulty lines are recorded in ``reading`` and left out. Blank lines are skipped. A unit without outputs
     causes a warning.
@@ -173,7 +173,7 @@ class _NeutralFaultError(Exception):
 
 
 def _unit_and_price(line: str, source: Source, nodes: dict[str, ObjectNode]) -> tuple[ReadUnit, str]:
-    """Return the unit of a line, and its price as an exact decimal text, empty for a unit without one.
+    """Return the unit of a line, and its price: an exact decimal text, or an empty text.
 
     ``nodes`` has the nodes read so far, by name; new nodes are added. Raises :class:`_NeutralFaultError` for
     a line of another form.

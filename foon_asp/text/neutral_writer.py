@@ -26,7 +26,7 @@ def write_neutral_unit(id_: str, inputs: Iterable[str], outputs: Iterable[str], 
 def _unit_line(
     id_: str, price: str, inputs: Sequence[tuple[str, int]], outputs: Sequence[tuple[str, int]]
 ) -> str:
-    """Return the line of a unit from names, which are JSON already, and their amounts."""
+    """Return the line of a unit; each name is already JSON, and stands with its amount."""
     input_list, output_list = map(_side_text, (inputs, outputs))
     price_part = f', "price": {Decimal(price):f}' if price else ""
     return f'{{"id": {json_line(id_)}, "inputs": {input_list}, "outputs": {output_list}{price_part}}}\n'
@@ -35,8 +35,8 @@ def _unit_line(
 def _side_text(names: Sequence[tuple[str, int]]) -> str:
     """Return a side of a unit in JSON: a list of names, or amounts by name if some amount is not 1.
 
-    The ``names`` are JSON already, each with its amount. In the object, the amounts of a name that comes
-    twice are added up.
+    Each of the ``names`` is already JSON, and stands with its amount. If a name comes twice, its amounts are
+    added up.
     """
     if all(amount == 1 for _, amount in names):
         return f"[{', '.join(name for name, _ in names)}]"
@@ -47,7 +47,7 @@ def _side_text(names: Sequence[tuple[str, int]]) -> str:
 
 
 class NeutralWriter:
-    """A writer of neutral files: a unit's id is its motion, a node is named by its one-line notation.
+    """A writer of neutral files; the id of a unit is its motion, the name of a node its one-line notation.
 
     See :class:`~foon_asp.text.format.Writer` for its methods.
     """
@@ -60,9 +60,9 @@ class NeutralWriter:
     def block(self, block: ObjectBlock, in_list: bool) -> WrittenPart:
         """Return the name of an object node in JSON, and its losses.
 
-        In a unit, the name is followed by an amount above 1: ``"egg": 2``. In a list, the text is an object
-        with ``label`` and, where stated, ``amount``. Raises :class:`CannotHoldError` for blanks around the
-        name, and if an earlier node has the same name.
+        In a unit, an amount above 1 stands behind the name: ``"egg": 2``. In a list, the text is an object
+        with ``label`` and, where stated, ``amount``. Raises :class:`CannotHoldError` for an empty name, for
+        blanks around the name, and if an earlier node has the same name.
         """
         states = tuple(map(with_container_word, block.states))
         node = block._replace(states=states).node

@@ -29,14 +29,18 @@ def find_goal(
 ) -> int:
     """Return the id of the object node that a goal names in ``names``, which is a network or a store.
 
-    The name is tried in this order: as the one-line notation of a node (``sweet potato; chopped; in [cutting
-    board]``); as the label of one of ``goal_entries``, those of the goals file; as the label of a single
-    node.
+    The name is tried in this order:
 
-    A text that is no notation, or the notation of no node, is also tried literally as a label. A label with
-    a semicolon after it (``onion;``) is only tried as notation: it is the node without states. Notation is
-    reduced to the level of ``names``. Raises :class:`GoalError` with candidates ready to paste if the name is
-    unknown or means several nodes. ``wording`` has the words for a goal in messages.
+    - as the one-line notation of a node, such as ``sweet potato; chopped; in [cutting board]``,
+    - as the label of an entry of the goals file, one of ``goal_entries``,
+    - as the label of a single node.
+
+    Notation is reduced to the level of ``names``. A text that is no notation, or the notation of no node, is
+    also tried literally as a label. A label with a semicolon after it, ``onion;``, is only tried as notation:
+    it is the node without states.
+
+    Raises :class:`GoalError` with candidates ready to paste if the name is unknown or means several nodes.
+    ``wording`` has the words for a goal in messages.
     """
     parsed_name: str | ObjectNode = name
     fault = None
@@ -94,10 +98,10 @@ def nodes_beginning(start: str, names: NodeNames, max_nodes: int) -> list[int]:
 
 
 def entry_names(goal_entries: Sequence[ListedObject], names: NodeNames) -> Iterator[str]:
-    """Yield a name for each entry of a goals file, by which :func:`find_goal` finds the entry's node.
+    """Yield a name for each entry of a goals file, by which :func:`find_goal` finds the node of the entry.
 
-    It is the label, or the notation of the node if the label also means another node. An entry that does not
-    match exactly one node has its label.
+    The name is the label of the entry. If the label also means another node, the name is the one-line
+    notation of the entry's node. An entry that does not match exactly one node has its label in any case.
     """
     counts = Counter(entry.pattern.label for entry in goal_entries)
     for entry in goal_entries:
@@ -113,7 +117,7 @@ def entry_names(goal_entries: Sequence[ListedObject], names: NodeNames) -> Itera
 def node_of_entry(entry: ListedObject, names: NodeNames) -> int:
     """Return the id of the only node that matches an entry of a goals file.
 
-    Raises :class:`GoalError` if several nodes match, or none.
+    Raises :class:`GoalError` if no node or several nodes match.
     """
     nodes = nodes_of_entry(entry, names)
     return _only_node(str(entry.pattern), names, len(nodes), nodes, GOAL)
@@ -138,7 +142,7 @@ def nodes_of_entry(entry: ListedObject, names: NodeNames) -> Sequence[int]:
 def _only_node(name: str, names: NodeNames, count: int, nodes: Sequence[int], wording: Wording) -> int:
     """Return the only one of ``nodes``; raises :class:`GoalError` with candidates if there are several.
 
-    ``count`` is the number of nodes that ``name`` means. ``nodes`` are the ids of at least the first ones.
+    ``count`` is the number of nodes that ``name`` means. ``nodes`` are their ids, or only the first ones.
     """
     if count > 1:
         message = f"the {wording.noun} {name!r} means {count} object nodes"

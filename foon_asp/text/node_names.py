@@ -23,7 +23,7 @@ class NodeNames(Protocol):
         """Return the ids of the nodes that match an entry of a kitchen or goals file."""
 
     def labelled(self, label: str) -> tuple[int, Sequence[int]]:
-        """Return how many nodes have a label, and the ids of all of them or at least of the first twelve."""
+        """Return how many nodes have a label, and the ids of at least the first twelve."""
 
     def beginning(self, start: str, max_labels: int) -> Sequence[str]:
         """Return labels that begin with ``start``, in alphabetical order, at most ``max_labels``."""

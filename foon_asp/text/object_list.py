@@ -13,7 +13,7 @@ from foon_asp.text.reading import Reading
 class ListedObject(NamedTuple):
     """An entry of a kitchen or goals file: the pattern of the nodes it means, its source and its amount.
 
-    ``amount`` is how many there are, or are wanted; ``None`` where the file does not say it.
+    ``amount`` is how many copies are available or wanted; ``None`` where the file does not say it.
     """
 
     pattern: NodePattern
@@ -24,10 +24,12 @@ class ListedObject(NamedTuple):
 def read_object_list(file: Path, warnings: list[Diagnostic] | None = None) -> list[ListedObject]:
     """Return the entries of a kitchen or goals file, in JSON or as object blocks of FOON text.
 
-    In JSON, it is a list of ``{"label", "states", "ingredients", "container", "amount"}``, of which only the
-    label is required. A ``*.json`` file is read as JSON, any other by its content. Warnings are added to
-    ``warnings``, and dropped if this is ``None``. Raises :class:`InputError` with the line and column of
-    every entry of another form, and of every entry that is listed a second time with another amount.
+    A ``*.json`` file is read as JSON, any other file by its content. JSON is a list of ``{"label", "states",
+    "ingredients", "container", "amount"}``, of which only the label is required. Warnings are added to the
+    list ``warnings``, if it is given.
+
+    Raises :class:`InputError` with the line and column of every faulty entry. An entry is also faulty if an
+    earlier entry lists the same object with another amount.
     """
     text = read_plain_text(file)
     format_ = JSON if file.suffix == JSON.list_suffix else format_of(text, str(file))

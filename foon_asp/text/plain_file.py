@@ -116,8 +116,8 @@ def protect_byte_order_mark(text: str) -> str:
 def read_beginning_text(file: Path, max_bytes: int = 1_000_000) -> str:
     """Return the beginning of a file as text, by which its format is recognised.
 
-    Other bytes than UTF-8 are replaced. ``max_bytes`` has to hold the first line of a neutral file, a whole
-    unit.
+    Bytes that are not UTF-8 are replaced. ``max_bytes`` has to cover the first line of a neutral file, which
+    is a whole unit.
     """
     return read_beginning(file, max_bytes).decode("utf-8-sig", errors="replace")
 
@@ -125,14 +125,14 @@ def read_beginning_text(file: Path, max_bytes: int = 1_000_000) -> str:
 def read_plain_text(file: Path) -> str:
     """Return the text of a file in UTF-8, without a byte order mark, with its line ends.
 
-    Raises :class:`UserError` for a store and when the file cannot be read, and :class:`InputError` with line
-    and column of the first byte that is not UTF-8.
+    Raises :class:`UserError` for a store, and when the file cannot be read. Raises :class:`InputError` with
+    line and column of the first byte that is not UTF-8.
     """
     return plain_text(read_content(file), file)
 
 
 def plain_text(data: bytes, file: Path) -> str:
-    """Return the text of ``data``, the bytes of a file; raises as :func:`read_plain_text` does."""
+    """Return the text of a file from its bytes ``data``; raises as :func:`read_plain_text` does."""
     if data.startswith(STORE_MAGIC):
         raise UserError(f"{file}: is a store, expected text; name a store only with --network")
     data = data.removeprefix(BOM_UTF8)

@@ -22,8 +22,8 @@ class FoonReader(Reading):
     ``diagnostics`` has the findings in all files read so far. ``left_out`` counts the lines that were not
     understood or do not form a unit. ``prices`` and ``amounts`` are those that copies of units state.
     ``marked`` are the nodes with the goal mark ``!``, each with its first place. ``repeated`` are the nodes
-    that a copy of a unit lists twice. ``last_units`` maps ids of units to places: it has the last unit with
-    outputs of each file that :meth:`read_network` read.
+    that a copy of a unit lists twice. ``last_units`` maps the id of a unit to its place. It has
+    the last unit with outputs of each file that :meth:`read_network` read.
 
     Example:
         >>> from pathlib import Path

@@ -43,7 +43,7 @@ class Reading:
     def reject(self, code: str, message: str, source: Source, excerpt: str = "") -> None:
         """Record a fault as an error; if ``lenient``, as a warning whose message ends in ``; left out``.
 
-        ``left_out`` is not changed: the caller counts lines.
+        ``left_out`` is not changed: the caller adds the number of lines.
         """
         severity = Severity.WARNING if self.lenient else Severity.ERROR
         message += "; left out" if self.lenient else ""

@@ -26,7 +26,7 @@ _FIELD = re.compile(r"[^\t\[\]{},]+")
 class Renaming:
     """A renaming of one name, to be applied after :meth:`learn` has read all mentions in all files.
 
-    If the new name already has an id, lines with the old name get this id; else they keep their own.
+    If the new name already has an id, lines with the old name get this id. Otherwise they keep their ids.
     ``mentions`` counts the mentions of the old name, ``new_mentions`` the mentions of the new name.
     """
 
@@ -45,13 +45,13 @@ class Renaming:
             self.mentions += name_kind == kind and name == old
 
     def learn_ids(self, ids: Mapping[str, int]) -> None:
-        """Record ids of the new name, with the number of lines that have each."""
+        """Record ids of the new name; ``ids`` maps each id to the number of lines that have it."""
         self._ids.update(ids)
 
     def line(self, line: str) -> str:
-        """Return a line of FOON text with the new name; its spelling stays where that is possible.
+        """Return a line of FOON text with the new name; all else stays as written where that is possible.
 
-        An id of the old name is replaced, too, see :meth:`id`. Lines without the old name, and lines that
+        An id of the old name is replaced, too, as :meth:`id` says. Lines without the old name, and lines that
         cannot be understood, are returned as they are.
         """
         if self.rename.old not in line or line[:1] not in {"O", "S", "M"}:
@@ -125,9 +125,9 @@ class Renaming:
         return tuple(self.name(NameKind.OBJECT, item) for item in items)
 
     def node(self, field: str) -> str:
-        """Return a node in one-line notation with the new name; any other text as it is.
+        """Return a node in one-line notation with the new name.
 
-        A node without the old name is returned as it is written, too.
+        A text that is no notation, and a node without the old name, are returned as they are written.
         """
         try:
             node = parse_node(field.strip())
@@ -143,7 +143,7 @@ class Renaming:
 
 
 def is_name(kind: str, name: str) -> bool:
-    """Whether a text can be a name of a kind in every position of FOON text where such a name may stand."""
+    """Whether a text can be a name of a kind wherever FOON text may have such a name."""
     if not name or any(letter in name for letter in "\r\n"):
         return False
     letter, brackets = {"object": ("O", ("[", "]", "{", "}")), "motion": ("M", ())}.get(kind, ("S", ()))

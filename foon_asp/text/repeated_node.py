@@ -23,7 +23,7 @@ def repeated_node(inputs: Sequence[ObjectNode], outputs: Sequence[ObjectNode]) -
 
 
 def repeated_note(repeated: Sequence[RepeatedNode]) -> list[str]:
-    """Return a note about all repeated nodes, one line in a list; an empty list without repeated nodes."""
+    """Return a list with one line: a note about all repeated nodes. Without repeated nodes, it is empty."""
     if not repeated:
         return []
     first = repeated[0]

@@ -39,9 +39,9 @@ def starter_files(
 ) -> dict[str, str]:
     """Return the texts of the files of a new data folder, by file name.
 
-    ``recipe`` is the text of the network; ``kitchen`` has ids of nodes. A motion without a rate gets 1. If
-    there are no ``rates`` at all, a comment says that nothing is known yet. Utensils are guessed from the
-    nodes.
+    ``recipe`` is the text of the network; ``kitchen`` has ids of nodes. A motion without a rate gets the rate
+    1. If ``rates`` is empty or missing, a comment says that nothing is known yet. Utensils are guessed from
+    the nodes.
     """
     motions = sorted(dict.fromkeys(network.motions))
     all_rates = {motion: (rates or {}).get(motion, Fraction(1)) for motion in motions}
@@ -57,7 +57,7 @@ def starter_files(
 
 
 def _utensils(nodes: Sequence[ObjectNode]) -> list[str]:
-    """Return the sorted labels of containers: they have contents, and relations lead to them.
+    """Return the sorted labels of utensils: nodes with contents, to which relations of other nodes lead.
 
     Labels that are also ingredients are left out.
     """

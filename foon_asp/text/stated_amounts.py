@@ -28,9 +28,10 @@ class StatedAmounts:
     def amounts_by_unit(self, network: Network | None = None) -> DataAmounts:
         """Return the amounts of units of which a copy states amounts, and a message if copies disagree.
 
-        The amounts are those of the first copy of a unit. A copy that states none has the amount 1 of each
-        node. Such copies only count if a ``network`` names the sources of all copies. The message is about
-        the first disagreement.
+        The amounts of a unit are those of its first copy. The message is about the first disagreement.
+
+        With a ``network``, all copies of a unit count. A copy without stated amounts then has the amount 1 of
+        each node. Without a network, only copies that state amounts count.
         """
         amounts: dict[FunctionalUnit, UnitAmounts] = {}
         conflict = ""
@@ -57,8 +58,8 @@ def apply_amount_table(
 ) -> tuple[DataAmounts, list[Diagnostic]]:
     """Return stated amounts overridden by a table, and warnings about rows that match no unit.
 
-    ``rows`` are those of the table. ``units`` are all units whose motion is in the table. Units whose amounts
-    are then all 1 are left out.
+    ``rows`` are those of the table. ``units`` are all units whose motion is in the table. The result leaves
+    out units whose amounts are all 1.
     """
     amounts = dict(stated.units)
     matched_names: set[UnitAmount] = set()
@@ -91,15 +92,15 @@ def apply_amount_table(
 def counted_amounts(
     inputs: Iterable[tuple[ObjectNode, int]], outputs: Iterable[tuple[ObjectNode, int]]
 ) -> UnitAmounts:
-    """Return the amounts above 1 of a unit from pairs of node and amount.
+    """Return the amounts above 1 of a unit; inputs and outputs are pairs of node and amount.
 
-    Amounts of a node that comes several times on a side are added up.
+    If a node comes several times on a side, its amounts are added up.
     """
     return UnitAmounts(_totals_above_one(inputs), _totals_above_one(outputs))
 
 
 def _totals_above_one(side: Iterable[tuple[ObjectNode, int]]) -> dict[ObjectNode, int]:
-    """Return the sum of the amounts of each node, without sums of 1."""
+    """Return the sum of the amounts of each node; sums of 1 are left out."""
     totals: Counter[ObjectNode] = Counter()
     for node, amount in side:
         totals[node] += amount

@@ -19,19 +19,21 @@ class StatedPrices:
         return len(self._copies.keys() | self._least.keys()) if self._copies else len(self._least)
 
     def add(self, unit: FunctionalUnit, price: Fraction, source: Source) -> None:
-        """Record the price of one copy of a unit, and where it is stated; copies have to agree."""
+        """Record the price of one copy of a unit, and where it is stated; all such copies have to agree."""
         self._copies.setdefault(unit, {}).setdefault(price, source)
 
     def add_least(self, unit: FunctionalUnit, price: Fraction) -> None:
-        """Record the price of one copy of a unit; of such copies, the cheapest counts."""
+        """Record the price of one copy of a unit; the least price of all copies counts."""
         if self._least.setdefault(unit, price) > price:
             self._least[unit] = price
 
     def price_by_unit(self, chosen: Mapping[FunctionalUnit, Fraction]) -> dict[FunctionalUnit, Fraction]:
-        """Return the price of each unit that was recorded; if its copies disagree, it is the ``chosen`` one.
+        """Return the price of each unit that was recorded.
 
-        For a unit of which a copy was recorded with :meth:`add_least`, it is the least price of all copies.
-        Raises :class:`InputError` if copies of another unit disagree and ``chosen`` has no price for it.
+        If a copy of the unit was recorded with :meth:`add_least`, this is the least price of all copies.
+        Otherwise, if the copies disagree, it is the ``chosen`` price.
+
+        Raises :class:`InputError` if such copies disagree and ``chosen`` has no price for the unit.
         """
         errors: list[Diagnostic] = []
         settled_prices = dict(self._least)

@@ -26,7 +26,9 @@ _OBJECT_LINE = re.compile(r"^(?:\ufeff)?O\d*[\t ]", re.MULTILINE)
 
 
 class Duration(NamedTuple):
-    """The duration of a motion in ``seconds``; a ``passive`` one needs nobody to stand by, as baking does.
+    """The duration of a motion in ``seconds``.
+
+    A ``passive`` motion, such as baking, needs nobody to stand by.
 
     Example:
         >>> foon_asp.Duration(1500, passive=True).seconds
@@ -40,7 +42,7 @@ class Duration(NamedTuple):
 def motion_in_first_column(name: str, found: str) -> str:
     """Return ``name``, the motion in the first column of a row, unchanged.
 
-    Raises :class:`LineError` if it is empty; ``found`` describes in the message what stands behind it.
+    Raises :class:`LineError` for an empty name; ``found`` describes in the message what the next column has.
     """
     if not name:
         raise LineError(1, found, ("the motion before it",))
@@ -50,8 +52,9 @@ def motion_in_first_column(name: str, found: str) -> str:
 def stated_name(name: str) -> str | ObjectNode:
     """Return the name in the first column: a label, which means all nodes with it, or a single node.
 
-    A label with a semicolon after it is the node without states, relations and contents. A text without
-    semicolon that is no notation is a label. Raises :class:`LineError` for other faults of notation.
+    A label with a semicolon after it is the node without states, relations and contents. A text that is no
+    notation is taken as a label, unless it has a semicolon or begins with a quote. Raises :class:`LineError`
+    for such a text, and for an empty one.
     """
     name = name.strip()
     if not name:
@@ -77,9 +80,9 @@ def _rate_row(name: str, value: str, column: int) -> tuple[str, Fraction]:
 
 
 def _duration_row(name: str, value: str, column: int) -> tuple[str, Duration]:
-    """Return the motion of a row and its duration, which is passive if another tab and ``passive`` follow.
+    """Return the motion of a row and its duration.
 
-    Raises :class:`LineError` at a fault.
+    The duration is passive if another tab and ``passive`` follow it. Raises :class:`LineError` at a fault.
     """
     motion = motion_in_first_column(name, "a duration")
     written, tab, word = value.partition("\t")
@@ -89,7 +92,7 @@ def _duration_row(name: str, value: str, column: int) -> tuple[str, Duration]:
 
 
 def _seconds(written: str, column: int) -> Fraction:
-    """Return the seconds of a duration such as ``90``, ``25 min`` or ``1.5 h``, exactly.
+    """Return the exact seconds of a duration such as ``90``, ``25 min`` or ``1.5 h``.
 
     Raises :class:`LineError` for another form, and for 0; ``column`` is that of ``written`` in its line.
     """
@@ -104,9 +107,9 @@ def _seconds(written: str, column: int) -> Fraction:
 
 
 def _tool_row(name: str, value: str, column: int) -> tuple[str | ObjectNode, int | None]:
-    """Return the tool of a row, as a label or a node, and how many there are, from 1 to 999,999.
+    """Return the tool of a row, as a label or a node, and the number of such tools.
 
-    Return ``None`` as the number for the word ``free``. Raises :class:`LineError` at a fault.
+    The number is from 1 to 999,999, or ``None`` for the word ``free``. Raises :class:`LineError` at a fault.
     """
     if value != "free" and not _TOOLS.fullmatch(value):
         raise LineError(column, repr(value), ("a number from 1", "free"))
@@ -181,11 +184,11 @@ def read_utensils(file: Path) -> frozenset[str]:
 
 
 def read_stock(file: Path) -> dict[ObjectNode, int]:
-    """Return how many copies of nodes there are, from a table, or from FOON text if it has an object line.
+    """Return the number of copies of each node in a table, or in FOON text if the file has an object line.
 
-    In FOON text, each object block counts as one copy, or as its amount; those of equal nodes are added up.
-    Raises :class:`InputError` for a line of another form, and for a node with two different counts in a
-    table.
+    In FOON text, an object block states its amount of copies, or else one copy. Copies of equal nodes are
+    added up. Raises :class:`InputError` for a line of another form. It is also raised for a node with two
+    different counts in a table.
     """
     text = "\n".join(split_lines(read_plain_text(file)))
     if not _OBJECT_LINE.search(text):

@@ -54,7 +54,7 @@ def _node_of_clean_block(block: str) -> ObjectNode | None:
 def _unlabelled_node_of_clean_states(states: str) -> ObjectNode | None:
     """Return a node with an empty label and the attributes of state lines; results are cached.
 
-    Return ``None`` if one of the lines has a remark or is no state line.
+    Return ``None`` if a line has a remark or is no state line.
     """
     lines = map(read_line, states.split("\n"))
     attributes = [line.attribute for line in lines if isinstance(line, StateLine) and not line.remarks]
@@ -73,8 +73,8 @@ def _nodes_of_clean_blocks(blocks: str) -> list[ObjectNode] | None:
 class TextUnits:
     """A reader of one FOON text, given in pieces; only one of its methods can be called, and only once.
 
-    All line ends have to be line feeds. ``file`` is the name of the file in sources. Diagnostics and goal
-    marks are recorded in ``reading``.
+    All line ends in the text have to be line feeds. ``file`` is the name of the file in sources. Diagnostics
+    and goal marks are recorded in ``reading``.
     """
 
     def __init__(self, pieces: Iterable[str], file: str, reading: Reading) -> None:
@@ -115,10 +115,11 @@ class TextUnits:
         return self._objects
 
     def _chunks(self) -> Iterator[tuple[str, bool]]:
-        """Yield the chunks between lines ``//``, each with whether it is the last; progress is reported.
+        """Yield the chunks of the text between lines ``//``, each with whether it is the last.
 
-        ``_number`` is set to the first line of each chunk. A line ``//`` with blanks behind it ends no chunk.
-        If the text is JSON behind other text, this fault is recorded, and there are no chunks.
+        A line ``//`` with blanks behind it ends no chunk. ``_number`` is set to the number of the first line
+        of each chunk. Progress is reported. If the text is JSON behind other text, this fault is recorded,
+        and there are no chunks.
         """
         report, unreported = progress_report(), 0
         pieces = [next(self._pieces, "")]
@@ -151,9 +152,10 @@ class TextUnits:
         self.reading.reject("json", message, Source(self.file, line, 1), split_lines(content)[0])
 
     def _clean_unit(self, chunk: str) -> ReadUnit | None:
-        """Return the unit of a well-formed chunk, read by its object blocks; ``None`` for another chunk.
+        """Return the unit of a well-formed chunk, read block by block; ``None`` for any other chunk.
 
-        A well-formed chunk has no amounts, no goals, and no comments but lines ``# From:`` at its beginning.
+        A well-formed chunk has no amounts and no goals. Its only comments are lines ``# From:`` at its
+        beginning.
         """
         first_line, copies = self._number, []
         while chunk[:1] == "#":
@@ -181,9 +183,9 @@ class TextUnits:
     def _units_line_by_line(self, chunk: str, last: bool) -> Iterator[ListedUnit]:
         """Yield the units of a chunk, read line by line; remarks and faults are recorded.
 
-        A chunk has several units where blanks stand behind ``//``. ``last`` is true for the last chunk of a
-        file; a unit without ``//`` at its end then causes a warning. Lines ``# Source:`` name the videos of
-        all units up to the next such lines.
+        A chunk has several units if some line ``//`` has blanks behind it. ``last`` is true for the last
+        chunk of a file; a unit without ``//`` at its end then causes a warning. Lines ``# Source:`` name the
+        videos of all units up to the next such lines.
         """
         self._lines = lines = chunk.split("\n")
         start = 0
@@ -211,10 +213,10 @@ class TextUnits:
             yield unit
 
     def _read_unit(self, start: int, end: int, closed: bool) -> ListedUnit | None:
-        """Return the unit of the lines from index ``start`` to before ``end``; ``None`` if they are no unit.
+        """Return the unit in the lines from index ``start`` to before ``end``; ``None`` if they are no unit.
 
         ``closed`` is true if ``//`` follows. Goal marks, warnings and faults are recorded. In a list without
-        motions, the objects are collected instead.
+        motions, the objects are collected, and ``None`` is returned.
         """
         section = _Section(end, closed, self.reading.left_out)
         for index in range(start, end):
@@ -251,7 +253,8 @@ class TextUnits:
     def _add_amount(self, section: "_Section", index: int) -> None:
         """Set the amount of the current object to that in a comment line, or record the line as a fault.
 
-        An amount of an object that could not be read is dropped; if ``lenient``, it counts as left out.
+        If the object could not be read, its amount is dropped, and the line counts as left out if
+        ``lenient``.
         """
         if section.object_unreadable:
             self.reading.left_out += self.reading.lenient
@@ -269,7 +272,8 @@ class TextUnits:
     def _add_line(self, section: "_Section", index: int) -> None:
         """Add an object, state or motion line to its section.
 
-        A line that is broken or out of place is recorded as a fault. So are slips in any line, as warnings.
+        A line that is broken or out of place is recorded as a fault. Slips in any line are recorded as
+        warnings.
         """
         line = self._lines[index]
         parsed = read_line(line)
@@ -305,9 +309,10 @@ class TextUnits:
             section.has_error = True
 
     def _warn_of_no_unit(self, section: "_Section") -> None:
-        """Warn that lines are no unit, and count them as left out.
+        """Warn that the lines of a section are no unit, and count them as left out.
 
-        Do nothing if an error that explains it is recorded already; if ``lenient``, this was no error.
+        If an error that was recorded before explains this, nothing is done. If ``lenient``, faults are no
+        errors, so the warning is always given.
         """
         if section.has_error and not self.reading.lenient:
             return
@@ -382,7 +387,7 @@ class _Section:
 
 
 def no_motion_message(object_count: int) -> str:
-    """Return the warning that a file of objects alone stands where a network was expected."""
+    """Return the warning that a file has only objects where a network was expected."""
     objects = "one object" if object_count == 1 else f"{object_count} objects"
     return f"{objects} and no motion: a list such as a kitchen or goals, without units"
 
@@ -395,7 +400,7 @@ def _closed_blocks(open_blocks: list[_OpenBlock]) -> tuple[ObjectBlock, ...]:
 
 
 def _without_lines(unit: ListedUnit) -> ReadUnit:
-    """Return a unit without its lines; a node that is listed twice has its greatest amount."""
+    """Return a unit without its lines; the amount of a node that is listed twice is its greatest amount."""
     if all(block.amount is None for block in (*unit.inputs, *unit.outputs)):
         return unit.identity
     return unit.identity._replace(amounts=unit.without_repeats.amounts)

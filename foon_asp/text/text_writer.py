@@ -40,7 +40,7 @@ class TextWriter:
         return self._line_text(line)
 
     def unit(self, inputs: Sequence[str], motion: str, outputs: Sequence[str], price: str) -> str:
-        """Return the lines of a unit from its parts, with a closing ``//``; ``price`` is lost."""
+        """Return the lines of a unit from its parts, with a closing ``//``; ``price`` is not written."""
         return "".join((*inputs, motion, *outputs, "//\n"))
 
     def network(self, units: Sequence[str], videos: Sequence[str]) -> str:
@@ -53,14 +53,14 @@ class TextWriter:
         return "".join(parts)
 
     def held_videos(self, videos: tuple[str, ...], comments: Sequence[str]) -> tuple[str, ...]:
-        """Return the videos that a comment line can name."""
+        """Return the ``videos`` that a comment line can name."""
         return tuple(video for video in videos if read_video(f"# Source:\t{video}") == video)
 
     def in_dialect(self, line: Line) -> Line:
-        """Return a line with only the parts that the dialect can hold, and in ``IDS`` with an id.
+        """Return a line with only the parts that the dialect can hold; in ``IDS``, the line gets an id.
 
-        Remarks are removed. Times become one field or two, as the dialect has them. A relation without a word
-        gets the word ``in``.
+        Remarks are removed. Times are put into one field or two, as the dialect has them. A relation without
+        a word gets the word ``in``.
         """
         line = line._replace(remarks=())
         line = with_container_word(line) if isinstance(line, StateLine) else line

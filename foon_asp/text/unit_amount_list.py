@@ -16,7 +16,8 @@ _AMOUNT = re.compile(r"[1-9]\d{0,6}", re.ASCII)
 def _amount_row(name: str, value: str, column: int) -> tuple[UnitAmount, int]:
     """Return motion, side and node of a row, and the amount, from 1 to 1,000,000.
 
-    The node is an output behind an arrow, otherwise an input. Raises :class:`LineError` at a fault.
+    If an arrow stands before the node, it is an output, otherwise an input. Raises :class:`LineError` at a
+    fault.
     """
     motion = motion_in_first_column(name, "an object node")
     *fields, written = value.split("\t")

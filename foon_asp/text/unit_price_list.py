@@ -23,11 +23,12 @@ class UnitPriceList(NamedTuple):
 
 
 def read_unit_prices(file: Path) -> UnitPriceList:
-    """Return the prices in a file of lines ``motion⇥price``, or for single units with their nodes.
+    """Return the prices in a file.
 
-    A single unit is written ``motion⇥input⇥...⇥→⇥output⇥...⇥price``. Nodes are in one-line notation; ``->``
-    may stand for ``→``. Raises :class:`InputError` for a line of another form, and for a motion or a unit
-    with two different prices.
+    A line ``motion⇥price`` has the price of all units of a motion. A line
+    ``motion⇥input⇥...⇥→⇥output⇥...⇥price`` has the price of a single unit. Nodes are in one-line notation;
+    ``->`` may stand for ``→``. Raises :class:`InputError` for a line of another form, and for a motion or a
+    unit with two different prices.
     """
     price_list = UnitPriceList({}, {}, {})
     for name, price, source in UNIT_PRICES.rows(file):
@@ -71,7 +72,7 @@ def _node_field(node: ObjectNode) -> str:
 
 
 def _parse_unit(motion: str, fields: list[str], column: int) -> FunctionalUnit:
-    """Return the unit of a motion whose ``fields`` are one or more inputs, an arrow, and any outputs.
+    """Return the unit of a motion and of fields: one or more inputs, an arrow, and any number of outputs.
 
     ``column`` is where the fields begin. Raises :class:`LineError` at a fault.
     """

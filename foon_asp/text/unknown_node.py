@@ -24,8 +24,9 @@ GOAL = Wording("goal", "--goal")
 class GoalError(UserError):
     """A name that means no object node, or several.
 
-    ``message`` is without candidates. ``candidates`` are those shown, in one-line notation, and ``hidden``
-    counts the others. The text of the error has the candidates ready to paste, behind ``option``.
+    ``message`` is without candidates. ``candidates`` are the candidates shown, in one-line notation.
+    ``hidden`` counts the candidates that are not shown. The text of the error has the candidates ready to
+    paste, behind ``option``.
     """
 
     def __init__(
@@ -77,7 +78,8 @@ def error_with_candidates(
 ) -> GoalError:
     """Return an error with up to twelve of the candidates, which are ids of nodes.
 
-    ``count`` is the number of all candidates, given or not; the error counts those that it does not show.
+    ``count`` is the number of all candidates, of which only some may be given. The error says how many it
+    does not show.
     """
     shown = [str(names.node(o)) for o in [*candidates][:_MAX_CANDIDATES]]
     return GoalError(message, shown, count - len(shown), wording.option)

@@ -40,10 +40,10 @@ class Table(NamedTuple, Generic[K, V]):
     second: str = ""
 
     def rows(self, file: Path, text: str | None = None) -> list[Row[K, V]]:
-        """Return the first row of each name in a file, or in ``text`` in place of its content.
+        """Return the first row of each name in a file; if ``text`` is given, it is read in place of the file.
 
-        Blank lines and ``#`` comments are skipped. Raises :class:`InputError` with every line of another
-        form, and with every line that gives another value to a name than an earlier line.
+        Blank lines and ``#`` comments are skipped. Raises :class:`InputError` with every faulty line. A line
+        is also faulty if it gives a name another value than an earlier line.
         """
         rows_by_name: dict[K, Row[K, V]] = {}
 
@@ -71,11 +71,11 @@ def read_rows(
 ) -> None:
     """Call ``read`` with each line of a file: the name before the tab, the value behind it, and the source.
 
-    ``text``, if given, is read in place of the file. Blank lines and ``#`` comments are skipped. If
+    If ``text`` is given, it is read in place of the file. Blank lines and ``#`` comments are skipped. If
     ``expected`` is empty, a line is a name without a tab and a value.
 
-    Raises :class:`InputError` with diagnostics of this ``code``: for each line without a required tab, and
-    for each line for which ``read`` raises :class:`LineError`.
+    Raises :class:`InputError` with diagnostics whose code is ``code``. There is one for each line without a
+    required tab, and for each line for which ``read`` raises :class:`LineError`.
     """
     errors: list[Diagnostic] = []
     lines = split_lines(read_plain_text(file) if text is None else text)

@@ -26,8 +26,8 @@ from foon_asp.text.listed_unit import node_of
 def write_line(line: Line) -> str:
     """Return the canonical text of a line, without line end.
 
-    It is unchanged for a line that was read without a remark. Ids, fields and the order of ingredients are
-    kept. Parts that were left out with a remark are missing.
+    If the line was read without a remark, this is the text that was read. Ids, fields and the order of
+    ingredients are kept. Parts that were left out with a remark are missing.
     """
     if isinstance(line, ObjectLine):
         return "\t".join((f"O{line.id}", line.label, *line.fields))
@@ -55,7 +55,7 @@ def write_node(node: ObjectNode) -> str:
 
 
 def write_counted_node(node: ObjectNode, amount: int | None) -> str:
-    """Return the lines of a node, and the line of its amount unless this is ``None``.
+    """Return the lines of a node, followed by the line of its amount; ``None`` is no amount.
 
     Raises :class:`UserError` for a name that means something else in FOON text.
     """
@@ -75,9 +75,9 @@ def write_motion(motion: str) -> str:
 
 @lru_cache(10_000, typed=True)  # many units have equal lines
 def _line_if_readable(line: Line) -> str | None:
-    """Return the text of a line with its line end; ``None`` if it is not read back as the same line.
+    """Return the text of a line with its line end.
 
-    Return ``None``, too, if UTF-8 cannot hold the text.
+    Return ``None`` if the text is not read back as the same line, or if UTF-8 cannot hold it.
     """
     written = write_line(line)
     try:
@@ -90,8 +90,7 @@ def _line_if_readable(line: Line) -> str | None:
 def write_unit(unit: FunctionalUnit, amounts: UnitAmounts = ALL_ONE) -> str:
     """Return the lines of a unit with its amounts, and a closing ``//``.
 
-    Raises :class:`UserError` for a unit that cannot be read back: without inputs, or with names that FOON
-    text cannot hold.
+    Raises :class:`UserError` for a unit without inputs, and for names that FOON text cannot hold.
     """
     if not unit.inputs:
         raise UserError(f"the unit {unit.motion!r} has no inputs, which FOON text cannot hold; JSON can")
