@@ -83,7 +83,7 @@ class Clash(Value, frozen=True, kw_only=True):
         return self.answer.ending
 
     def lines(self, conditions: str) -> Iterator[str]:
-        """Yield lines on constraints that clash, those cheapest to drop, and the best tree without these.
+        """Yield lines on the smallest clash, the cheapest constraints to drop, and the best tree then.
 
         ``conditions`` names the conditions under which claims hold, such as ``strict containers``.
         """
@@ -136,14 +136,14 @@ class Clash(Value, frozen=True, kw_only=True):
 def find_clash(problem: Problem, settings: Settings, own_weights: Mapping[Constraint, int]) -> Clash:
     """Find a smallest clash of the constraints in ``settings``, and the cheapest constraints to drop.
 
-    It also finds the best tree by units without the dropped constraints. ``own_weights`` are the costs of
-    dropping a rule of a constraint, 1 by default. At a limit, the result has what was found by then.
+    The result also has the best tree by units without the dropped constraints. ``own_weights`` has the cost
+    of dropping a rule of a constraint; the default is 1. At a limit, the result has what was found by then.
 
     The smallest clash is a smallest minimal unsatisfiable subset (MUS). It is found by implicit hitting sets
     (Ignatiev, Previti, Liffiton and Marques-Silva, Smallest MUS Extraction with Minimal Hitting Set
-    Dualization, CP 2015). A correction set is a set of constraints without which a tree exists. Each round
-    takes a smallest set that hits all known correction sets. If no tree keeps to this set, it is the clash;
-    else a correction set is added.
+    Dualization, CP 2015). A correction set is a set of constraints without which a tree exists. Each
+    iteration takes a smallest set of constraints that hits all correction sets found so far. If no tree keeps
+    to this set, it is the clash. Otherwise, a further correction set is found.
     """
     deadline = settings.effective_deadline
     settings = settings._replace(deadline=deadline)
@@ -159,7 +159,7 @@ def find_clash(problem: Problem, settings: Settings, own_weights: Mapping[Constr
     hitting_set_encoding = (question_encoding("blame.lp"),)
 
     def clash_with(**fields: Any) -> Clash:
-        """Return the result with all constraints and these fields."""
+        """Return the result with all constraints, and with other attributes from ``fields``."""
         return Clash(constraints=tuple(by_number.values()), **fields)
 
     def constraints_of(numbers: Iterable[int]) -> tuple[WeightedConstraint, ...]:

@@ -112,8 +112,8 @@ def _rule_texts(constraints: Iterable[Constraint]) -> dict[Constraint, str]:
 def _data_files(problem: Problem) -> dict[str, str]:
     """Return the texts of a data folder for a problem, by file name.
 
-    Rates and prices of units are among them if the problem has any. Below level 3, the texts describe the
-    network of level 3 that the network of the problem was made of.
+    If the problem has rates and prices of units, they are included. Below level 3, the texts describe the
+    network of level 3 from which the network of the problem was made.
     """
     network = problem.network
     detailed = network.detailed or network

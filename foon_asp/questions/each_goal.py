@@ -76,7 +76,7 @@ class EachGoal(Result, frozen=True, kw_only=True, tag=schema_name("each")):
         raise UserError("these are steps for several goals: name one with --goal")
 
     def remark(self, format_: str) -> str:
-        """Return the remarks that a format cannot express, answer by answer."""
+        """Return remarks on what a format cannot hold, answer by answer."""
         return "\n".join(filter(None, (answer.remark(format_) for answer in self.answers)))
 
     def write_chart(self, file: File) -> None:

@@ -126,10 +126,10 @@ def _pose_export(
 
 
 def _has_merged_copies(problem: Problem, items: str | None) -> bool:
-    """Return whether ``items`` is ``set``: then all copies of an object node are one.
+    """Return whether ``items`` is ``set``, by which all copies of an object node are one.
 
-    Raises :class:`UserError` for an unknown word, and if ``items`` contradicts the problem. ``None`` stands
-    for the items of the problem as they are.
+    ``None`` stands for the items of the problem as they are. Raises :class:`UserError` for an unknown word,
+    and if ``items`` contradicts the problem.
     """
     if items not in {None, *_ITEM_RULES}:
         raise UserError(f"found items={items!r}, expected one of {', '.join(_ITEM_RULES)}")

@@ -63,10 +63,10 @@ class Flip(NamedTuple):
     def __lt__(self, other: object) -> bool:
         """Compare relative changes exactly, by as many digits as it takes.
 
-        A factor is the quotient of ``at`` and ``rate``. Equal factors are compared first. After that, two
-        changes that are not rational cannot be equal. If both are above or both below, their factors would be
-        equal. Otherwise, the factors would add up to 2. But positive roots, none a rational multiple of
-        another, are linearly independent over the rational numbers (Besicovitch, 1940).
+        A factor is the quotient of ``at`` and ``rate``. Equal factors are found first. Other changes can only
+        be equal if both are rational. Proof: equal changes in one direction have equal factors. In opposite
+        directions, the factors add up to 2. But positive roots are linearly independent over the rational
+        numbers if none is a rational multiple of another (Besicovitch, 1940).
         """
         assert isinstance(other, Flip)
         if self.at.divide_by(self.rate) == other.at.divide_by(other.rate):

@@ -159,7 +159,7 @@ def merge(
 
 
 def merge_files(data_files: DataFiles, store: Path | None, lenient: bool) -> Merged:
-    """Merge networks in memory, or with a path ``store`` into a store.
+    """Merge networks in memory; if ``store`` is a path, merge them into a store there.
 
     The store also keeps all other data files. A file named twice is read once. ``lenient`` skips lines that
     are not understood. Raises :class:`UserError` if there is no unit, or if copies of a unit have different

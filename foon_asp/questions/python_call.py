@@ -56,7 +56,7 @@ class _Listener(Reporter):
         self._report(self._progress._replace(bounds={**self._progress.bounds, objective: bound}))
 
     def step(self, word: str, done: int, total: int) -> None:
-        """Report the progress with the numbers of answers that are done and in total; ``word`` is dropped."""
+        """Report the progress with the number of answers that are done, and their total; drop ``word``."""
         self._report(self._progress._replace(done=done, total=total))
 
     def _report(self, progress: Progress) -> None:
@@ -112,9 +112,10 @@ def arguments_with_problem(
     """Return the positional arguments of a question, with a problem in place of a path or of data.
 
     ``name`` and ``parameters`` are those of the question. ``positional`` and ``named`` are the arguments of
-    the call. The arguments are returned as they are if the question is about no problem. A question about
-    data as well as problems (``about``) gets data if no goal is named. ``named`` is changed in place: the
-    goal and the container rule of the problem are removed, and ``objective`` becomes ``objectives``.
+    the call. If the question is about no problem, ``positional`` is returned unchanged. If it can be about
+    data as well (its parameter is ``about``), it gets data if no goal is named. ``named`` is changed in
+    place: the goal and the container rule of the problem are removed, and ``objective`` becomes
+    ``objectives``.
 
     Raises :class:`UserError` for a call without a subject, for a path that does not exist, and for a goal
     beside a problem, which has its own.
