@@ -36,7 +36,7 @@ def find_question(verb: str) -> Question:
 
 
 def values_with_role(question: Question, values: Mapping[str, Any], roles: Role) -> dict[str, Any]:
-    """Return the ``values``, by name, of the options of a question whose role is one of ``roles``.
+    """Return the values, by name, of the options of a question that have one of the ``roles``.
 
     An option without a value is left out.
     """
@@ -93,9 +93,10 @@ def _warn_of_measures(command: "_Command", values: Mapping[str, Any]) -> None:
 def _subjects(question: Question, command: "_Command", values: Mapping[str, Any]) -> list[tuple[object, ...]]:
     """Return the first arguments of each call of a question, such as ``(problem,)``.
 
-    There is one call, or one for each of several goals if the command names none. If a command names no goals
-    or no data, a file with a tree may name them. Assumed goals and kitchen items are printed to stderr.
-    Raises :class:`UserError` if the results for several goals would be written into one file.
+    If the command names no goals or no data, a file with a tree may name them. If there are several goals and
+    the command names none, there is a call for each goal. Otherwise, there is one call. Assumed goals and
+    kitchen items are printed to stderr. Raises :class:`UserError` if the results for several goals would be
+    written into one file.
     """
     problem_options = values_with_role(question, values, Role.PROBLEM)
     tree = values.get("tree")

@@ -26,7 +26,7 @@ class Opening:
     """A function that opens the data of a batch, and that can be sent to other processes.
 
     ``options``: name and value of each option for data.
-    ``digest``: a digest of the contents of the files, by which equal openings open the same data.
+    ``digest``: a digest of the contents of the files. Openings with equal options and digests are equal.
     """
 
     options: tuple[tuple[str, Any], ...]

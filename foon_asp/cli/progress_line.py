@@ -30,7 +30,7 @@ class Progress(Reporter):
 
     The elapsed and the remaining seconds follow. The remaining seconds are estimated from the steps done, or
     from the speed at which the gap between incumbent and bound closes. If the ``deadline`` comes earlier, or
-    nothing can be estimated, they are the seconds up to it.
+    nothing can be estimated, the seconds up to the deadline are shown.
     """
 
     def __init__(self, deadline: Deadline | None = None) -> None:

@@ -171,7 +171,7 @@ def _chosen_format(question: Question, format_: str | None, output: Path | None)
 
 
 def _show_result(result: Result, format_: str) -> None:
-    """Write a result to standard output in a format, and to stderr a remark that the format cannot hold.
+    """Write a result to standard output in a format, and a remark on what the format cannot hold to stderr.
 
     If there is nothing to draw, only the remark is written.
     """

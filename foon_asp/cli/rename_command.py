@@ -87,7 +87,7 @@ def command(old: str, new: str, paths: tuple[Path, ...], kind: str | None, write
 
 
 def _files_to_rename_in(paths: Sequence[Path]) -> list[Path]:
-    """Return the FOON files of paths, and of each path that is a folder, also the tables in it."""
+    """Return the FOON files in ``paths`` and in their folders, and the tables in the folders."""
     files = [file for file, _ in foon_files(paths)]
     for folder in (path for path in paths if path.is_dir()):
         files += sorted(file for name in TABLES for file in folder.rglob(name) if file.is_file())

@@ -146,7 +146,7 @@ def output_option(metavar: str, help_: str) -> Callable[[Command], Command]:
 
 
 def network_options(command: Command) -> Command:
-    """Add the options that name data, ``-v``, and the options of every verb."""
+    """Add ``-v``, the options that name data, and the options that every verb has."""
     added = (*_DATA_OPTIONS, _VERBOSE_OPTION, debug_option)
     return functools.reduce(lambda f, option: option(f), reversed(added), command)
 
@@ -165,9 +165,8 @@ def data_options(command: Command) -> Command:
 def limit_options(command: Callable[..., ExitCode]) -> Callable[..., ExitCode]:
     """Add the options for limits to a command.
 
-    The command is called with the ``deadline`` that they set, in place of their values. If a limit stops it,
-    a message says what to do. Without an answer, this is the message of a :class:`LimitError`, which is
-    raised.
+    In place of their values, the command gets the ``deadline`` that they set. If a limit stops the command,
+    advice is printed. If the limit interrupts it without an answer, :class:`LimitError` is raised instead.
     """
 
     @functools.wraps(command)

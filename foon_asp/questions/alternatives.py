@@ -66,8 +66,8 @@ class Alternatives(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_nam
         optimal: How many are proved optimal: the first ones.
         in_every_optimal: The ids of the units that all optimal trees have.
         in_some_optimal: The ids of the units that some optimal tree has.
-        partings: The object node nearest to the goals that the trees make in different ways; then such a node
-            for each group of trees that make it in one way.
+        partings: The object nodes where trees part, from the goals backwards. After the first node, each
+            group of trees that make it in one way has its own next node.
         trees: The trees, in order of their costs.
 
     Example:

@@ -203,8 +203,8 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
         soft_constraints: Every constraint that may be broken; empty without a tree.
         skipped: The goals that cannot be made and were left out, if that was asked for.
         goals_alone: For a few goals, the best tree for each by itself.
-        sum_of_goals_alone: What these trees cost by the first objective, added up, or multiplied for success;
-            null if a goal has no tree.
+        sum_of_goals_alone: What the trees of ``goals_alone`` cost by the first objective, added up, or
+            multiplied for success; null if a goal has no tree.
         serves: For several goals, the goals that each unit is needed for.
         cross_check: The checks by other engines, where they are requested.
         policy: With ``--retries``, the trees to follow, and their chance; null without a tree, or if a limit
@@ -525,8 +525,8 @@ def answer_under_rules(
     Of a large store, no more is read than the answer takes. The first way that works is taken:
 
     1. :func:`answer_from_store`, if :func:`near_goals` allows it.
-    2. For a large store, :func:`solve_nearby_under`. It reads only the units near the goals and the units that
-       the rules require. Its outcome is the answer if it is proved, or if a limit is reached.
+    2. For a large store, :func:`solve_nearby_under`. It reads only the units near the goals, and the units
+       that the rules require. Its outcome is the answer if it is proved, or if a limit is reached.
     3. :func:`_answer_with_reading`.
 
     If a limit or ctrl-C stops the third way without a tree, a tree of the second way is the answer. If

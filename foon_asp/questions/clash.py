@@ -44,9 +44,9 @@ class Clash(Value, frozen=True, kw_only=True):
         constraints: All constraints.
         smallest_clash: A smallest set of constraints that cannot hold together; empty if none is known.
         smallest_proved: Whether no fewer constraints clash.
-        cheapest_to_drop: The cheapest constraints to drop so that the others leave a tree; where a limit came
-            first, perhaps more than these.
-        answer: The best tree by units without these; null where it is not known.
+        cheapest_to_drop: The cheapest constraints to drop so that the others leave a tree. If a limit came
+            first, cheaper ones may suffice.
+        answer: The best tree by units without the dropped constraints; null where it is not known.
 
     Example:
         >>> ice = foon_asp.load().problem("ice")
