@@ -1,4 +1,4 @@
-"""From a parsed command to a result: the data are read, the problem is posed, and the question is called."""
+"""From a parsed command to a result: read the data, pose the problem, and call the question."""
 
 import importlib
 from collections.abc import Mapping, Sequence
@@ -50,8 +50,8 @@ def ask(
     """Read the data that a command names, call its question, and return the result.
 
     ``values`` are the values of all options by name. ``form`` is the chosen format of the result, or ``None``
-    for the default format. If no goal is named and there are several, the question is called for each one,
-    and the result is an :class:`EachGoal`. Progress is shown at a terminal. A file of measures that has no
+    for the default format. If no goal is named and there are several, the question is called for each one.
+    The result is then an :class:`EachGoal`. Progress is shown at a terminal. A file of measures that has no
     effect causes a warning.
     """
     option_names = {option.name for option in question.options}

@@ -74,13 +74,14 @@ class BatchData:
 
     @property
     def example(self) -> Problem:
-        """A problem over the data with an arbitrary goal, to check the rules for all questions on it."""
+        """A problem over the data with an arbitrary goal, to check rules that hold for all questions."""
         return self._datasets[None].problem((0,), "strict")
 
     def problem(self, question: BatchQuestion) -> Problem:
         """Return the problem of a question.
 
-        Of a large store, only the part that the goals can need is read, at the first use of the problem.
+        Of a large store, only the part that the goals can need is read. It is read at the first use of the
+        problem.
         """
         dataset = self._dataset_with_kitchen(question.kitchen)
         files = question.stock, question.stays

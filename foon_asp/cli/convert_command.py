@@ -21,7 +21,10 @@ from foon_asp.whole_file import utf_8, write_whole
 
 
 class _Task(NamedTuple):
-    """A file to convert, and the path ``to`` which the result is written; ``None`` for stdout."""
+    """A file to convert.
+
+    ``to``: the path of the result; ``None`` for stdout.
+    """
 
     file: Path
     to: Path | None

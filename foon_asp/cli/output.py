@@ -207,7 +207,7 @@ def write_remark_once(text: str) -> None:
 
 
 def with_plain_signs(text: str) -> str:
-    """Return a text with ASCII in place of each of ``→ ≈ × †`` that standard output cannot encode."""
+    """Return a text with ASCII for each sign ``→ ≈ × †`` that standard output cannot encode."""
     encoding = getattr(getattr(sys.stdout, "stream", sys.stdout), "encoding", None) or "utf-8"
     return text.translate(
         {ord(sign): ascii_ for sign, ascii_ in _SIGNS.items() if encodable(sign, encoding) != sign}

@@ -103,7 +103,8 @@ def _kind_of_name(old: str, kind: str | None, texts: Mapping[Path, str]) -> str:
     """Return the kind of an old name in the texts, such as ``object``.
 
     ``kind`` is the kind that the user chose; ``None`` if none was chosen. Raises :class:`UserError` if the
-    name is nowhere, is not of the chosen kind, or is of several kinds and none is chosen.
+    name is nowhere, or is not of the chosen kind. Without a chosen kind, it is also raised for a name of
+    several kinds.
     """
     counts: Counter[tuple[str, str]] = Counter()
     for file, text in texts.items():

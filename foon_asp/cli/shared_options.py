@@ -1,4 +1,4 @@
-"""Options that several verbs share, for data, limits and output, and the reading of the data."""
+"""Options that several verbs share, and the reading of the data that they name."""
 
 import functools
 from collections.abc import Callable, Sequence

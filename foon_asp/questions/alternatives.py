@@ -1,4 +1,4 @@
-"""Other trees: all optimal ones, the next best, those that differ most, and what all have in common."""
+"""Other trees: all optimal ones, the next best or those that differ most, and what they have in common."""
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence

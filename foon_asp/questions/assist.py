@@ -115,8 +115,8 @@ class Assistance(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name(
     def show(self) -> Iterator[Block]:
         """Yield a table with a row for each number of helped units, and what is proved of the success.
 
-        The tree of the last row follows if ``most`` was given, or if it reaches the success to reach. If no
-        tree exists, one line says so in place of the table.
+        The tree of the last row follows if ``most`` was given, or if this tree reaches the success asked for.
+        If no tree exists, one line says so in place of the table.
         """
         yield from self.goal_lines()
         conditions, last = self.problem.conditions, self.rows[-1]

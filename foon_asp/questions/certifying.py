@@ -87,9 +87,9 @@ def certify_tree(
 ) -> tuple[Certificate | None, Ending, str]:
     """Prove that an executable tree or plan is the best, without a search, and write the certificate.
 
-    Return the certificate or ``None``, how the proof ended, and in words what is proved. The ending is
-    ``DONE`` if the tree is proved best by every objective, ``NEGATIVE`` if a better tree is found, and else
-    ``LIMIT``. Without a certificate, no file is written.
+    Return the certificate or ``None``, how the proof ended, and in words what is proved. If the tree is
+    proved best by every objective, the ending is ``DONE``. If a better tree is found, it is ``NEGATIVE``.
+    Otherwise, it is ``LIMIT``. Without a certificate, no file is written.
     """
     objectives, certificate = levels(objectives), None
     try:

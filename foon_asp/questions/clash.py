@@ -39,7 +39,7 @@ class Clash(Value, frozen=True, kw_only=True):
     """Whether some constraints leave a tree, and if not, why.
 
     Attributes:
-        complete: Whether it is known if they clash; otherwise a limit came first.
+        complete: Whether it is known if the constraints clash; otherwise a limit came first.
         tree_exists_without_constraints: Whether there is a tree once all are dropped.
         constraints: All constraints.
         smallest_clash: A smallest set of constraints that cannot hold together; empty if none is known.
@@ -83,9 +83,10 @@ class Clash(Value, frozen=True, kw_only=True):
         return self.answer.ending
 
     def lines(self, conditions: str) -> Iterator[str]:
-        """Yield lines on the smallest clash, the cheapest constraints to drop, and the best tree then.
+        """Yield lines on the smallest clash, on the cheapest constraints to drop, and on the best tree.
 
-        ``conditions`` names the conditions under which claims hold, such as ``strict containers``.
+        The best tree is the one without the dropped constraints. ``conditions`` names the conditions under
+        which claims hold, such as ``strict containers``.
         """
         dropped, answer = self.cheapest_to_drop, self.answer
         if not self.tree_exists_without_constraints:

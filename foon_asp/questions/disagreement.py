@@ -41,7 +41,10 @@ def write_disagreement(request: ClaimedAnswer, disagreement: DisagreementError) 
 
 
 def disagreement_name(outcome: Outcome) -> str:
-    """Return the name of the file of a report, with a digest of the network and the ids of the goals."""
+    """Return the name of the file of a report.
+
+    The name has a digest of the network, and the ids of the goals.
+    """
     problem = outcome.problem
     return (
         f"foon-asp-disagreement-{_digests(problem)['network'][:8]}-{'-'.join(map(str, problem.goals))}.json"

@@ -1,4 +1,4 @@
-"""The rates at which another tree becomes the best, as one success rate changes: exact and as decimals."""
+"""Rates at which another tree becomes the best, as one success rate changes: exact, and as decimals."""
 
 from decimal import Context, Decimal
 from fractions import Fraction
@@ -24,7 +24,7 @@ class Flip(NamedTuple):
     def inwards(self) -> Fraction:
         """The value ``at``, rounded towards ``rate`` to four significant digits.
 
-        It has more digits if it would pass ``rate`` with four.
+        If four digits would pass ``rate``, it has more.
         """
         digits = 4
         if self.at.rational == self.rate:
@@ -50,7 +50,7 @@ class Flip(NamedTuple):
             digits *= 2
 
     def change(self, digits: int) -> tuple[Fraction, Fraction]:
-        """Return a lower and an upper bound on the relative change of the rate, which is not negative.
+        """Return a lower and an upper bound on the size of the relative change of the rate, without its sign.
 
         The quotient of ``at`` and ``rate`` is enclosed in ``digits`` significant digits. If it is rational,
         both bounds are equal to the change.

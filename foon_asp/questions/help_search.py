@@ -1,4 +1,4 @@
-"""The best tree of which a person does at most M units, for one M after another."""
+"""The best trees of which a person does at most 0, 1, 2, ... units."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
@@ -206,9 +206,12 @@ def helped_trees(
     """Find the best trees with help for 0, 1, 2, ... units.
 
     ``person`` has the person's rates by motion; ``None`` for a person who never fails. The person takes over
-    only motions with a higher rate than the robot's. The rows end with ``max_helped`` units, with the first
-    tree whose success is at least ``wanted``, or where more help changes nothing. ``max_helped`` and
-    ``wanted`` may be ``None``.
+    only motions with a higher rate than the robot's. The last row is the first for which one of three
+    conditions holds:
+
+    - it has help for ``max_helped`` units; ``None`` for no such condition
+    - the success of its tree is at least ``wanted``; ``None`` for no such condition
+    - more help changes nothing
 
     At a limit or ctrl-C, the rows end early, and the last may be unproved. If no better tree was found for
     it, it repeats the tree of the row before. Before the first row, ctrl-C raises ``KeyboardInterrupt``.

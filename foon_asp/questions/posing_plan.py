@@ -1,4 +1,4 @@
-"""The problem of a tree or plan in a file, with its goals, and its data where the command names none."""
+"""Problems of trees and plans in files, with their goals and their data."""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path

@@ -101,8 +101,8 @@ def limited_reading() -> AbstractContextManager[object]:
 def constraint_weights(weight_of_file: Mapping[File, int]) -> dict[Constraint, int]:
     """Return the weights by constraint, from weights by file or name of a constraint.
 
-    Raises :class:`UserError` for a weight that is no whole number from 1 to the greatest that is allowed, and
-    for a constraint with two weights.
+    Raises :class:`UserError` for a constraint with two weights. It is also raised for a weight that is not a
+    whole number, is less than 1, or is above the greatest that is allowed.
     """
     from foon_asp.asp.search_tuning import SEARCH  # noqa: PLC0415 (where there are rules)
 

@@ -31,7 +31,8 @@ class Limits(TypedDict, total=False):
 class Posed(Limits, total=False):
     """Keyword options of :class:`Limits`, and the goals and container rule of the problem.
 
-    A question needs these if its first argument is a path or data, and not a problem.
+    The goals and the container rule are for a question whose first argument is a path or data, and not a
+    problem.
     """
 
     goal: str | ObjectNode | Iterable[str | ObjectNode]
