@@ -87,7 +87,11 @@ class Aligned(Result, frozen=True, kw_only=True, tag=schema_name("align")):
     """The units of the recipe in the words of the network."""
 
     def foon(self) -> str:
-        """Return the recipe as FOON text, with nodes that differ in a word or label as the network has them."""
+        """Return the recipe as FOON text.
+
+        A node that differs from a node of the network in a word or label only is written as the network has
+        it.
+        """
         return write_units(self.aligned_units, ["In the words of another network"])
 
     def show(self) -> Iterator[Block]:

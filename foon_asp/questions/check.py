@@ -317,7 +317,7 @@ def check(
 
 
 def _user_rule_check(rules: "Settings", used_up: bool) -> "UserRuleCheck":
-    """Return the check that finds the user rules which a tree breaks; with ``used_up``, a check of plans."""
+    """Return the check that finds which user rules a tree breaks, or a plan if ``used_up``."""
     from foon_asp.asp.user_rule_check import UserRuleCheck  # noqa: PLC0415 (takes clingo along)
 
     return UserRuleCheck(rules, used_up)

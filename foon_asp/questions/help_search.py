@@ -134,7 +134,7 @@ class PricedHelp:
     def _problem_at(self, price: Fraction) -> Problem:
         """Return the problem at a price of help.
 
-        The rate of a motion is the greater one of the robot's rate and the person's rate times the price.
+        The rate of a motion is the robot's rate, or the person's rate times the price if that is greater.
         """
         rates = {m: max(rate, self._better.get(m, 0) * price) for m, rate in self._rates.items()}
         return replace(self._problem, rates=rates)

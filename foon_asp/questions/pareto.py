@@ -132,8 +132,8 @@ class Front(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("pare
     def show(self) -> Iterator[Block]:
         """Yield what is proved, and the points as a table with the units that change from point to point.
 
-        If trees were asked for, the units of the first tree follow. For each further tree, the units follow
-        that it drops (-) and adds (+). Notes name the trees that would not run if items were used up.
+        If trees were asked for, the units of the first tree follow. For each further tree, the dropped units
+        (-) and the added units (+) follow. Notes name the trees that would not run if items were used up.
         """
         yield from self.goal_lines()
         yield self._claim_text()
