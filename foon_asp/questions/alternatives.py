@@ -58,12 +58,12 @@ class Parting(Value, frozen=True):
 
 
 class Alternatives(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("alternatives")):
-    """Trees for the goals of a problem, the best first; none contains all units of another.
+    """Trees for the goals of a problem, the best first; no tree contains all units of another.
 
     Attributes:
         complete: Whether every tree that was asked for is listed. If not, a limit was reached.
         unproved: How many of the last trees are not proved to be the next ones: others may come before them.
-        optimal: How many are proved optimal: the first ones.
+        optimal: How many trees are proved optimal; they are the first ones.
         in_every_optimal: The ids of the units that all optimal trees have.
         in_some_optimal: The ids of the units that some optimal tree has.
         partings: The object nodes where trees part, from the goals backwards. After the first node, each
@@ -209,7 +209,7 @@ class _Pool(NamedTuple):
     """Trees in order of their costs.
 
     ``complete``: whether all trees that were asked for are among them.
-    ``unproved``: the number of trees at the end of the list before which other trees might come.
+    ``unproved``: how many of the last trees are not proved to be the next ones.
     """
 
     trees: tuple[_CostedIds, ...]

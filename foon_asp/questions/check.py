@@ -115,7 +115,7 @@ class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ch
     def ending(self) -> Ending:
         """``NEGATIVE`` if the tree does not execute, has units of its own, or breaks a rule.
 
-        Otherwise, it is ``DONE``, or how the proof ended where a certificate is asked for.
+        Otherwise, if a certificate is asked for, it is the ending of the proof. Otherwise, it is ``DONE``.
         """
         sound = self.executes and not self.not_in_network and not self.breaks
         return self.proof_ending if sound else Ending.NEGATIVE

@@ -36,7 +36,7 @@ class EachGoal(Result, frozen=True, kw_only=True, tag=schema_name("each")):
         return next(ending for ending in (Ending.LIMIT, Ending.NEGATIVE, Ending.DONE) if ending in endings)
 
     def show(self) -> Iterator[Block]:
-        """Yield the answers one after the other; answers with the same tree share one display of it."""
+        """Yield the answers one after the other; answers with the same tree are shown together."""
         from foon_asp.questions.answer import Answer  # noqa: PLC0415 (takes the solver along)
 
         for number, (first, *others) in enumerate(self._groups_by_tree()):

@@ -72,7 +72,7 @@ class Point(Value, frozen=True):
 
     @property
     def ids(self) -> tuple[int, ...]:
-        """The units by id in the whole network, in an order that executes."""
+        """The ids of the units in the whole network, in an order that executes."""
         return tuple(step.id for step in self.units if step.id is not None)
 
 

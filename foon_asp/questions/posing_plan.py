@@ -42,7 +42,10 @@ def pose_plan(
     with command.reading():
 
         def used_up(goals: Sequence[int]) -> UsedUp | None:
-            """Return how items are used up for goals, by id, in the amounts named or of the answer."""
+            """Return how items are used up for goals, which are given by id.
+
+            The amounts are those on the command line, or else those of the answer.
+            """
             wanted = [answer.wanted.get(dataset.names.node(goal), 1) for goal in goals]
             stated = amounts or (wanted if answer.wanted and items != "lasting" else ())
             return items_for(dataset, goals, stated, items, stock, stays)
@@ -126,8 +129,8 @@ def own_networks(kitchen: Network, files: Mapping[Path, ListedTree]) -> Sequence
     """Return the files with trees that also serve as the network, for a command that names no data.
 
     If the bundled ``kitchen`` has at least half of the units in all files, it is the network, and no file is
-    returned. The program that wrote the trees perhaps made up the other units. If the kitchen has fewer, that
-    may be chance, and the files without an answer are returned.
+    returned. Other units were perhaps made up by the program that wrote the trees. Otherwise, the files that
+    hold no answer are returned.
 
     A warning names the network, unless the bundled kitchen has all units. If all files are answers about
     other data, :class:`UserError` is raised, since an answer holds only a part of its data.
