@@ -189,7 +189,7 @@ class _Command:
         return bool(self._data_options.get("measures"))
 
     def given(self, option: str) -> bool:
-        """Return whether the value of an option is from the command line, and no default."""
+        """Return whether the value of an option is from the command line, and not a default."""
         return self._context.get_parameter_source(option) is ParameterSource.COMMANDLINE
 
     def add_sources(self, sources: Sequence[Path]) -> None:

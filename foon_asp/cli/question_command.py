@@ -37,8 +37,8 @@ _ESCAPED_FORMATS = frozenset(
 def question_command(verb: str) -> click.Command:
     """Import the module of a verb, and return the command that asks the question of the verb.
 
-    Its parameters are the options of the question, and those for limits, formats and data that it needs. The
-    command of ``view`` can also serve a page.
+    Its parameters are the options of the question, and the options for limits, formats and data that it
+    needs. The command of ``view`` can also serve a page.
     """
     question = find_question(verb)
     command: Callable[..., ExitCode] = _answer_function(question)

@@ -126,7 +126,7 @@ _DEBUG_OPTION = click.option(
 
 
 def debug_option(command: Command) -> Command:
-    """Add the options of every verb, ``--quiet`` and ``--debug``, which ``main`` interprets."""
+    """Add ``--quiet`` and ``--debug``, the options that every verb has; ``main`` interprets them."""
     return _QUIET_OPTION(_DEBUG_OPTION(command))
 
 
@@ -157,7 +157,7 @@ def is_verbose() -> bool:
 
 
 def data_options(command: Command) -> Command:
-    """Add the options of :func:`network_options`, and those for measures, stand-ins and the level."""
+    """Add the options of :func:`network_options`, and the options for measures, stand-ins and the level."""
     options = (_MEASURE_OPTION, *_STAND_IN_OPTIONS, _LEVEL_OPTION)
     return network_options(functools.reduce(lambda f, option: option(f), reversed(options), command))
 

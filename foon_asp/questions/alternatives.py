@@ -51,7 +51,7 @@ class Way(Value, frozen=True):
 
 
 class Parting(Value, frozen=True):
-    """Where trees part: an object node that they make in different ways."""
+    """An object node that trees make in different ways."""
 
     object: Node
     ways: tuple[Way, ...]

@@ -193,7 +193,7 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
         proof_by_objective: Of an optimal answer, what proves each objective.
         costs: What the tree costs by every objective; null without a tree.
         lower_bound: By objective in order, a proved bound on its best value: no cost is less, no success is
-            greater. Only trees that are best by all objectives before it count.
+            greater. Only trees count that are best by all earlier objectives.
         used_up: Whether the steps, each done once, run where items are used up; null without a tree, and
             where items are used up anyway.
         units: The steps of the tree, in an order that executes; null without a tree.

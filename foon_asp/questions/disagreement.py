@@ -103,7 +103,7 @@ def disagreement_json(request: ClaimedAnswer, disagreement: DisagreementError) -
 
 
 def _rule_texts(constraints: Iterable[Constraint]) -> dict[Constraint, str]:
-    """Return the text of the rules of each constraint, with those of included files."""
+    """Return, for each constraint, the text of its rules and of the files that they include."""
     texts: dict[Constraint, str] = {}
     for constraint in constraints:
         definition = find_constraint(constraint)

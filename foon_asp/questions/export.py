@@ -241,7 +241,7 @@ def to_unified_planning(
 ) -> Any:
     """Return the goals of a problem as a problem of unified-planning, with the names that PDDL has.
 
-    :func:`foon_asp.read_plan` reads its plans back. The package comes with ``foon-asp[planning]``.
+    :func:`foon_asp.read_plan` reads the plans for it back. The package comes with ``foon-asp[planning]``.
 
     Parameters:
         objectives: What actions cost: a name, names separated by commas, or several names.

@@ -66,12 +66,12 @@ class _Listener(Reporter):
 
 
 def wrap_for_python(ask: Callable[P, T], signature: inspect.Signature) -> Callable[P, T]:
-    """Return a function that also takes a path or data for a problem, ``cancel`` and ``on_progress``.
+    """Return the function of a question for Python, with the options ``cancel`` and ``on_progress``.
 
-    ``ask`` is the function of a question. In a call from Python, arguments are checked against the
-    ``signature``; a command has read them already. The token ``cancel`` ends the call with what was found by
-    then; if this takes too long, the call raises :class:`StoppedError`. The function ``on_progress`` gets
-    each :class:`Progress`.
+    ``ask`` is the function to wrap. A path or data may be given in place of its problem. In a call from
+    Python, arguments are checked against the ``signature``; a command has read them already. The token
+    ``cancel`` ends the call with what was found by then. If this takes too long, the call raises
+    :class:`StoppedError`. The function ``on_progress`` gets each :class:`Progress`.
     """
     name, check = ask.__name__, checker(ask, signature)
 
