@@ -94,7 +94,7 @@ class Optima(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("opt
 
 
 def _cells(answers: list[Answer], list_count: int, columns: Iterable[Objective]) -> Iterator[str | Cell]:
-    """Yield the cells of a table row, but not that of the goal, for answers with equal status and costs.
+    """Yield the cells after the goal in a row of a table, for answers with equal status and costs.
 
     The cells are:
 

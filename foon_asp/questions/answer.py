@@ -512,7 +512,7 @@ def answer_problem(
 ) -> Answer:
     """Solve a problem; return the answer, with the seconds that reading took, if they are known.
 
-    If ``reporter`` is ``None``, that of the caller is used.
+    If ``reporter`` is ``None``, the reporter of the caller is used.
     """
     return _answer_of(solve(problem, objectives, settings, reporter or caller().reporter))
 
@@ -530,7 +530,7 @@ def answer_under_rules(
     3. :func:`_answer_with_reading`.
 
     If a limit or ctrl-C stops the third way without a tree, a tree of the second way is the answer. If
-    ``reporter`` is ``None``, that of the caller is used.
+    ``reporter`` is ``None``, the reporter of the caller is used.
     """
     nearby = near_goals(problem, objectives, settings)
     if nearby is not None:

@@ -147,7 +147,7 @@ def _pose_goals(
 
     With ``all_makeable``, the problem has an arbitrary goal, which :func:`compare` replaces. With
     ``published``, the goals are by default those of the published table. A goal outside of the table raises
-    :class:`UserError`. A container rule that is not that of the table causes a warning.
+    :class:`UserError`. Another container rule than the one of the table causes a warning.
     """
     if published:
         table = read_published(published_file())
