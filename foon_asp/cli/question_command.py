@@ -158,7 +158,7 @@ def _format_options(question: Question) -> list[Callable[[Command], Command]]:
 
 
 def _chosen_format(question: Question, format_: str | None, output: Path | None) -> str:
-    """Return the format of a result: ``format_``, or that for the ending of ``output``, or the default.
+    """Return the format of a result: ``format_``, else the one for the ending of ``output``, else the default.
 
     Raises :class:`UserError` for a picture or a page without an output at a terminal.
     """
