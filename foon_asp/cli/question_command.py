@@ -158,9 +158,10 @@ def _format_options(question: Question) -> list[Callable[[Command], Command]]:
 
 
 def _chosen_format(question: Question, format_: str | None, output: Path | None) -> str:
-    """Return the format of a result: ``format_``, else the one for the ending of ``output``, else the default.
+    """Return the format of a result.
 
-    Raises :class:`UserError` for a picture or a page without an output at a terminal.
+    It is ``format_``, else the one for the ending of ``output``, else the default. Raises :class:`UserError`
+    for a picture or a page without an output at a terminal.
     """
     form = format_ or (question.formats[0] if output is None else question.format_of(output))
     if form in _NOT_FOR_TERMINALS and output is None and sys.stdout.isatty():
