@@ -1,4 +1,4 @@
-"""From a parsed command to a result: the data are read, the problem is posed, and the question is called."""
+"""From a parsed command to a result: read the data, pose the problem, and call the question."""
 
 import importlib
 from collections.abc import Mapping, Sequence
@@ -36,7 +36,7 @@ def find_question(verb: str) -> Question:
 
 
 def values_with_role(question: Question, values: Mapping[str, Any], roles: Role) -> dict[str, Any]:
-    """Return the ``values``, by name, of the options of a question whose role is one of ``roles``.
+    """Return the values, by name, of the options of a question that have one of the ``roles``.
 
     An option without a value is left out.
     """
@@ -50,8 +50,8 @@ def ask(
     """Read the data that a command names, call its question, and return the result.
 
     ``values`` are the values of all options by name. ``form`` is the chosen format of the result, or ``None``
-    for the default format. If no goal is named and there are several, the question is called for each one,
-    and the result is an :class:`EachGoal`. Progress is shown at a terminal. A file of measures that has no
+    for the default format. If no goal is named and there are several, the question is called for each one.
+    The result is then an :class:`EachGoal`. Progress is shown at a terminal. A file of measures that has no
     effect causes a warning.
     """
     option_names = {option.name for option in question.options}
@@ -93,9 +93,10 @@ def _warn_of_measures(command: "_Command", values: Mapping[str, Any]) -> None:
 def _subjects(question: Question, command: "_Command", values: Mapping[str, Any]) -> list[tuple[object, ...]]:
     """Return the first arguments of each call of a question, such as ``(problem,)``.
 
-    There is one call, or one for each of several goals if the command names none. If a command names no goals
-    or no data, a file with a tree may name them. Assumed goals and kitchen items are printed to stderr.
-    Raises :class:`UserError` if the results for several goals would be written into one file.
+    If the command names no goals or no data, a file with a tree may name them. If there are several goals and
+    the command names none, there is a call for each goal. Otherwise, there is one call. Assumed goals and
+    kitchen items are printed to stderr. Raises :class:`UserError` if the results for several goals would be
+    written into one file.
     """
     problem_options = values_with_role(question, values, Role.PROBLEM)
     tree = values.get("tree")
@@ -188,7 +189,7 @@ class _Command:
         return bool(self._data_options.get("measures"))
 
     def given(self, option: str) -> bool:
-        """Return whether the value of an option is from the command line, and no default."""
+        """Return whether the value of an option is from the command line, and not a default."""
         return self._context.get_parameter_source(option) is ParameterSource.COMMANDLINE
 
     def add_sources(self, sources: Sequence[Path]) -> None:

@@ -26,7 +26,7 @@ class Opening:
     """A function that opens the data of a batch, and that can be sent to other processes.
 
     ``options``: name and value of each option for data.
-    ``digest``: a digest of the contents of the files, by which equal openings open the same data.
+    ``digest``: a digest of the contents of the files. Openings with equal options and digests are equal.
     """
 
     options: tuple[tuple[str, Any], ...]
@@ -74,13 +74,14 @@ class BatchData:
 
     @property
     def example(self) -> Problem:
-        """A problem over the data with an arbitrary goal, to check the rules for all questions on it."""
+        """A problem over the data with an arbitrary goal, to check rules that hold for all questions."""
         return self._datasets[None].problem((0,), "strict")
 
     def problem(self, question: BatchQuestion) -> Problem:
         """Return the problem of a question.
 
-        Of a large store, only the part that the goals can need is read, at the first use of the problem.
+        Of a large store, only the part that the goals can need is read. It is read at the first use of the
+        problem.
         """
         dataset = self._dataset_with_kitchen(question.kitchen)
         files = question.stock, question.stays

@@ -53,7 +53,7 @@ def _complete_goal(context: click.Context, prefix: str) -> Iterable[str]:
 
 
 def _complete_objectives(context: click.Context, prefix: str) -> Iterable[str]:
-    """Return completions of the last name in a list of objectives: of ``units,s``, ``units,success``.
+    """Return completions of the last name in a list of objectives: ``units,success`` for ``units,s``.
 
     Objectives that the list has already are left out.
     """
@@ -83,8 +83,9 @@ def _complete_constant(context: click.Context, prefix: str) -> Iterable[str]:
 def _constants_of(constraint: str, context: click.Context, prefix: str) -> Iterable[str]:
     """Return completions of ``CONSTANT=VALUE`` for a ready-made constraint.
 
-    Up to the ``=``, they are the constants of the constraint. After it, they are motions or labels of the
-    data, as the ending of the constant's name says. A constant with another ending has no completions.
+    Up to the ``=``, the completions are the constants of the constraint. After it, they are motions or labels
+    of the data: the ending of the constant's name says which. A constant with another ending has no
+    completions.
     """
     name, equals, value = prefix.partition("=")
     if not equals:

@@ -75,7 +75,10 @@ complete -o default -o filenames -F _foon_asp %(prog_name)s
 """
 
     def get_completions(self, args: list[str], incomplete: str) -> list[CompletionItem[str]]:
-        """Return the completions; if no quote is open, without their text up to the last ``:`` or ``=``."""
+        """Return the completions of the word ``incomplete``.
+
+        If no quote is open, their text up to the last ``:`` or ``=`` of the word is cut off.
+        """
         is_quoted = os.environ[_LINE_VARIABLE].removesuffix(incomplete).endswith(("'", '"'))
         completed = None if is_quoted else re.match(r".*[:=]", incomplete)
         items = super().get_completions(args, incomplete)

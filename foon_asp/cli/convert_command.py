@@ -21,7 +21,10 @@ from foon_asp.whole_file import utf_8, write_whole
 
 
 class _Task(NamedTuple):
-    """A file to convert, and the file ``to`` write; ``to``: ``None`` for stdout."""
+    """A file to convert.
+
+    ``to``: the path of the result; ``None`` for stdout.
+    """
 
     file: Path
     to: Path | None
@@ -112,10 +115,10 @@ def _make_folder(folder: Path) -> None:
 def _tasks(files: list[FolderFile], is_folder: bool, output: Path | None, target: Dialect) -> list[_Task]:
     """Return a task for each file: where its conversion is written to.
 
-    ``is_folder`` says that a folder is converted. ``output`` is the value of ``--output``: for a single file,
-    the file to write or an existing folder to write it into; else a folder, which may be new. Raises
-    :class:`UserError` for several files without an output folder, and for two that would be written to one
-    path.
+    ``is_folder`` says that a folder is converted. ``output`` is the value of ``--output``. For a single file,
+    it is the file to write, or an existing folder to write into. Otherwise, it is a folder, which may be new.
+    Raises :class:`UserError` for several files without an output folder, and for two files that would be
+    written to one path.
     """
     if len(files) == 1 and not is_folder:
         file = files[0].file

@@ -1,4 +1,4 @@
-"""Handlers of ctrl-C in a process that answers one command: before and after the command, it exits at once.
+"""Handlers of ctrl-C in a process that answers one command: before and after it, ctrl-C exits at once.
 
 While modules are imported, and after the command, Python may ignore or misreport a ``KeyboardInterrupt``. So
 this module is imported first, and imports as little as possible.

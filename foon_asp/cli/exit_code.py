@@ -37,8 +37,8 @@ def exit_code_of(ending: "Ending") -> ExitCode:
 def code_and_message(error: BaseException) -> tuple[ExitCode, str]:
     """Return the exit code and the message of an error.
 
-    Errors that click shows itself must not be given. Limits, ctrl-C and a lack of memory have the code
-    ``LIMIT``; wrong input and failures of the system have ``USAGE``. Any other error is reported as a bug.
+    Limits, ctrl-C and a lack of memory have the code ``LIMIT``. Wrong input and failures of the system have
+    ``USAGE``. Any other error is reported as a bug. The error must not be one that click shows itself.
     """
     match error:
         case LimitError() | click.Abort(__cause__=LimitError()):

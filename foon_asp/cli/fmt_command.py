@@ -72,9 +72,9 @@ def command(paths: tuple[Path, ...], check: bool, output: Path | None, lenient: 
 
 
 def _report(file_count: int, changed_count: int, refused_count: int, check: bool) -> None:
-    """Print the numbers of files that changed, were in canonical form, or were not understood, to stderr.
+    """Print to stderr how many files changed, were in canonical form, and were not understood.
 
-    Nothing is printed for a single file. With ``check``, the files have not been changed.
+    With ``check``, the first number is of files that would change. Nothing is printed for a single file.
     """
     if file_count < 2:
         return

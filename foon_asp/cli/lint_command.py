@@ -243,9 +243,9 @@ def _repair(found: Findings, contents: Mapping[Path, bytes], unsafe: bool) -> _R
 
 
 def _write_repairs(repaired: _Repaired, contents: Mapping[Path, bytes]) -> dict[Path, bytes]:
-    """Write the repaired files that changed, except those in ``contents``; return ``contents``, repaired.
+    """Write the repaired files that changed; return ``contents`` after the repair.
 
-    Each written file is reported on stderr.
+    Files in ``contents`` are not written. Each written file is reported on stderr.
     """
     for file, (old_content, new_content) in repaired.items():
         if old_content != new_content and file not in contents:
@@ -269,8 +269,8 @@ def _show_repairs(repaired: _Repaired, finding_count: int) -> ExitCode:
 def _report(linted: Linted, statistics: bool, format_: str, err: bool) -> None:
     """Print the findings in a format, or with ``statistics`` a text with their counts by code.
 
-    ``err`` prints to standard error, except for ``github`` and ``json``. The format ``github`` is printed
-    without escapes, since a program reads it.
+    If ``err``, formats other than ``github`` and ``json`` are printed to standard error. The format
+    ``github`` is printed without escapes, since a program reads it.
     """
     if format_ == "github":
         write_data(linted.github())

@@ -44,7 +44,10 @@ class _Verbs(click.Group):
         return list(VERBS)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """Import and return the command of a verb, or ``None``; from now on, ctrl-C raises an exception."""
+        """Import and return the command of a verb; return ``None`` for an unknown verb.
+
+        After this call, ctrl-C raises an exception.
+        """
         command = verb_command(cmd_name) if cmd_name in VERBS else None
         raise_at_ctrl_c()  # after all imports
         return command

@@ -122,7 +122,7 @@ def safe_streams() -> Iterator[None]:
 
 
 def show_remarks(shown: bool) -> None:
-    """Make standard error show, or else drop, all text that is written from now on."""
+    """Set whether text written to standard error from now on is shown or dropped."""
     cast(SafeStream, sys.stderr).quiet = not shown
 
 
@@ -207,7 +207,7 @@ def write_remark_once(text: str) -> None:
 
 
 def with_plain_signs(text: str) -> str:
-    """Return a text with ASCII for those of the signs ``→ ≈ × †`` that standard output cannot encode."""
+    """Return a text with ASCII for each sign ``→ ≈ × †`` that standard output cannot encode."""
     encoding = getattr(getattr(sys.stdout, "stream", sys.stdout), "encoding", None) or "utf-8"
     return text.translate(
         {ord(sign): ascii_ for sign, ascii_ in _SIGNS.items() if encodable(sign, encoding) != sign}

@@ -20,8 +20,8 @@ _STDIN = Path("/dev/stdin")  # may be a file: foon-asp lint - < recipe.txt
 def check_outputs(further_inputs: Iterable[Path] = (), written: Iterable[Path] | None = None) -> None:
     """Raise :class:`UserError` if the current command would write a file that it reads, or one file twice.
 
-    ``further_inputs`` are inputs that its parameters do not name. ``written`` are its outputs, by default
-    those that its parameters name. The check runs before a search, which may take an hour.
+    ``further_inputs`` are inputs that no parameter of the command names. ``written`` are the outputs; by
+    default, the parameters name them. The check runs before a search, which may take an hour.
     """
     outputs = [*(_output_files() if written is None else written)]
     if not outputs:
@@ -99,9 +99,12 @@ def _paths_in(value: object) -> list[Path]:
 def _files_read_for(path: Path) -> Iterator[Path]:
     """Yield the files read for a path that a parameter names.
 
-    They are the encodings and networks of a folder, a file with the files that it includes, or the file of a
-    ready-made constraint. The domains in the folder of a problem in PDDL are among them. Nothing is yielded
-    for a path that cannot be read.
+    - For a folder: its encodings, the files that they include, and its networks.
+    - For an encoding: the file, and the files that it includes.
+    - For a problem in PDDL: the file, and the domains in its folder.
+    - For a ready-made constraint: its file, and the files that it includes.
+
+    For any other file, yield the file; for a path that cannot be read, nothing.
     """
     with contextlib.suppress(UserError, OSError):  # reported when it is read
         if path.is_dir():

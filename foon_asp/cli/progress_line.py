@@ -29,8 +29,8 @@ class Progress(Reporter):
     """A reporter that shows one line during a long search: incumbent and bound, or the number of steps done.
 
     The elapsed and the remaining seconds follow. The remaining seconds are estimated from the steps done, or
-    from the speed at which the gap between incumbent and bound closes. If the ``deadline`` comes earlier, or
-    nothing can be estimated, they are the seconds up to it.
+    else from the speed at which the gap closes. If the ``deadline`` comes earlier, or nothing can be
+    estimated, the seconds up to the deadline are shown.
     """
 
     def __init__(self, deadline: Deadline | None = None) -> None:

@@ -37,8 +37,8 @@ _ESCAPED_FORMATS = frozenset(
 def question_command(verb: str) -> click.Command:
     """Import the module of a verb, and return the command that asks the question of the verb.
 
-    Its parameters are the options of the question, and those for limits, formats and data that it needs. The
-    command of ``view`` can also serve a page.
+    Its parameters are the options of the question, and the options for limits, formats and data that it
+    needs. The command of ``view`` can also serve a page.
     """
     question = find_question(verb)
     command: Callable[..., ExitCode] = _answer_function(question)
@@ -158,9 +158,10 @@ def _format_options(question: Question) -> list[Callable[[Command], Command]]:
 
 
 def _chosen_format(question: Question, format_: str | None, output: Path | None) -> str:
-    """Return the format of a result: ``format_``, else that of the ending of ``output``, else the default.
+    """Return the format of a result.
 
-    Raises :class:`UserError` for a picture or a page without an output at a terminal.
+    It is ``format_``, else the one for the ending of ``output``, else the default. Raises :class:`UserError`
+    for a picture or a page without an output at a terminal.
     """
     form = format_ or (question.formats[0] if output is None else question.format_of(output))
     if form in _NOT_FOR_TERMINALS and output is None and sys.stdout.isatty():
@@ -171,7 +172,7 @@ def _chosen_format(question: Question, format_: str | None, output: Path | None)
 
 
 def _show_result(result: Result, format_: str) -> None:
-    """Write a result to standard output in a format, and to stderr a remark that the format cannot hold.
+    """Write a result to standard output in a format, and a remark on what the format cannot hold to stderr.
 
     If there is nothing to draw, only the remark is written.
     """

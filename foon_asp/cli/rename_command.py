@@ -87,7 +87,7 @@ def command(old: str, new: str, paths: tuple[Path, ...], kind: str | None, write
 
 
 def _files_to_rename_in(paths: Sequence[Path]) -> list[Path]:
-    """Return the FOON files of paths, and of each path that is a folder, also the tables in it."""
+    """Return the FOON files in ``paths`` and in their folders, and the tables in the folders."""
     files = [file for file, _ in foon_files(paths)]
     for folder in (path for path in paths if path.is_dir()):
         files += sorted(file for name in TABLES for file in folder.rglob(name) if file.is_file())
@@ -103,7 +103,8 @@ def _kind_of_name(old: str, kind: str | None, texts: Mapping[Path, str]) -> str:
     """Return the kind of an old name in the texts, such as ``object``.
 
     ``kind`` is the kind that the user chose; ``None`` if none was chosen. Raises :class:`UserError` if the
-    name is nowhere, is not of the chosen kind, or is of several kinds and none is chosen.
+    name is nowhere, or is not of the chosen kind. Without a chosen kind, it is also raised for a name of
+    several kinds.
     """
     counts: Counter[tuple[str, str]] = Counter()
     for file, text in texts.items():

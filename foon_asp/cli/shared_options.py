@@ -1,4 +1,4 @@
-"""Options that several verbs share, for data, limits and output, and the reading of the data."""
+"""Options that several verbs share, and the reading of the data that they name."""
 
 import functools
 from collections.abc import Callable, Sequence
@@ -126,7 +126,7 @@ _DEBUG_OPTION = click.option(
 
 
 def debug_option(command: Command) -> Command:
-    """Add the options of every verb, ``--quiet`` and ``--debug``, which ``main`` interprets."""
+    """Add ``--quiet`` and ``--debug``, the options that every verb has; ``main`` interprets them."""
     return _QUIET_OPTION(_DEBUG_OPTION(command))
 
 
@@ -146,7 +146,7 @@ def output_option(metavar: str, help_: str) -> Callable[[Command], Command]:
 
 
 def network_options(command: Command) -> Command:
-    """Add the options that name data, ``-v``, and the options of every verb."""
+    """Add ``-v``, the options that name data, and the options that every verb has."""
     added = (*_DATA_OPTIONS, _VERBOSE_OPTION, debug_option)
     return functools.reduce(lambda f, option: option(f), reversed(added), command)
 
@@ -157,7 +157,7 @@ def is_verbose() -> bool:
 
 
 def data_options(command: Command) -> Command:
-    """Add the options of :func:`network_options`, and those for measures, stand-ins and the level."""
+    """Add the options of :func:`network_options`, and the options for measures, stand-ins and the level."""
     options = (_MEASURE_OPTION, *_STAND_IN_OPTIONS, _LEVEL_OPTION)
     return network_options(functools.reduce(lambda f, option: option(f), reversed(options), command))
 
@@ -165,9 +165,8 @@ def data_options(command: Command) -> Command:
 def limit_options(command: Callable[..., ExitCode]) -> Callable[..., ExitCode]:
     """Add the options for limits to a command.
 
-    The command is called with the ``deadline`` that they set, in place of their values. If a limit stops it,
-    a message says what to do. Without an answer, this is the message of a :class:`LimitError`, which is
-    raised.
+    In place of their values, the command gets the ``deadline`` that they set. If a limit stops the command,
+    advice is printed. If the limit interrupts it without an answer, :class:`LimitError` is raised instead.
     """
 
     @functools.wraps(command)

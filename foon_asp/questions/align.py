@@ -87,11 +87,15 @@ class Aligned(Result, frozen=True, kw_only=True, tag=schema_name("align")):
     """The units of the recipe in the words of the network."""
 
     def foon(self) -> str:
-        """Return the recipe as FOON text; a node that differs in a word or label is as the network has it."""
+        """Return the recipe as FOON text.
+
+        A node that differs from a node of the network in a word or label only is written as the network has
+        it.
+        """
         return write_units(self.aligned_units, ["In the words of another network"])
 
     def show(self) -> Iterator[Block]:
-        """Yield counts of nodes, labels and units, the nodes one edit away with their edits, and new nodes.
+        """Yield counts of nodes, labels and units, then nodes one edit away with their edits, then new nodes.
 
         The nodes one edit away are in order of the price of their edit.
         """
@@ -117,7 +121,7 @@ class Aligned(Result, frozen=True, kw_only=True, tag=schema_name("align")):
 def _pose_recipe(command: Command) -> tuple[Foon]:
     """Return the recipe that a command names, in a tuple, as the first argument of :func:`align`.
 
-    Raises :class:`UserError` if the command names none.
+    Raises :class:`UserError` if the command names no recipe.
     """
     if not command.names_data:
         raise UserError("align what? name a recipe: foon-asp align RECIPE --to NETWORK")

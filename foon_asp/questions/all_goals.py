@@ -94,13 +94,17 @@ class Optima(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("opt
 
 
 def _cells(answers: list[Answer], list_count: int, columns: Iterable[Objective]) -> Iterator[str | Cell]:
-    """Yield the cells of a row, without that of the goal, for answers with equal status and costs.
+    """Yield the cells after the goal in a row of a table, for answers with equal status and costs.
 
-    The first cell names the lists of objectives that the answers are for. It says ``all`` if there are
-    several lists, ``list_count`` in number, and the answers are for all of them. A ``*`` marks a tree that
-    does not run if items are used up. The measures by the objectives in ``columns``, the status and the sum
-    of the seconds follow. Without a tree, the first cell and the measures are empty. A measure that is not
-    known is ``–``.
+    The cells are:
+
+    - the lists of objectives that the answers are for, or ``all`` if they are for all of several lists;
+      a ``*`` marks a tree that does not run if items are used up
+    - the measure by each objective in ``columns``, or ``–`` if it is not known
+    - the status
+    - the sum of the seconds
+
+    ``list_count`` is the number of all lists. Without a tree, the first cell and the measures are empty.
     """
     first = answers[0]
     names = [" then ".join(answer.objectives) for answer in answers]
@@ -184,8 +188,8 @@ def solve_all_goals(
 def _in_search_order(problems: Sequence[Problem], solved: SolvedGoals) -> Iterator[tuple[int, Problem]]:
     """Yield problems of one goal each, with their index, in the order in which they are to be solved.
 
-    The order is the given one until ``solved`` has landmarks to share. From then on, it is by ascending
-    ``h_add`` of the goal. The caller adds to ``solved`` while it solves the problems.
+    Until ``solved`` has landmarks to share, the order is the given one. From then on, problems whose goal has
+    a smaller ``h_add`` come first. The caller adds to ``solved`` while it solves the problems.
     """
     remaining = [*range(len(problems))]
     while remaining and not solved.sharing:
@@ -198,8 +202,8 @@ def _in_search_order(problems: Sequence[Problem], solved: SolvedGoals) -> Iterat
 def _problems_by_goal(problem: Problem, settings: Settings) -> list[Problem]:
     """Return a problem for each goal of a problem.
 
-    Over a large store without rules and replaced encodings, each problem reads units near its own goal.
-    Otherwise the whole network is read if rules or stand-ins need it.
+    Without rules and replaced encodings, each problem over a large store reads only units near its own goal.
+    In all other cases, the whole network is read if rules or stand-ins need it.
     """
     if isinstance(problem, NearbyProblem) and not settings.constraints and settings.replaced is None:
         return problem.single_goal_problems()

@@ -1,4 +1,4 @@
-"""Other trees: all optimal ones, the next best, those that differ most, and what all have in common."""
+"""Other trees: all optimal ones, the next best or those that differ most, and what they have in common."""
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
@@ -51,23 +51,23 @@ class Way(Value, frozen=True):
 
 
 class Parting(Value, frozen=True):
-    """Where trees part: an object node that they make in different ways."""
+    """An object node that trees make in different ways."""
 
     object: Node
     ways: tuple[Way, ...]
 
 
 class Alternatives(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("alternatives")):
-    """Trees for the goals of a problem, the best first; none contains all units of another.
+    """Trees for the goals of a problem, the best first; no tree contains all units of another.
 
     Attributes:
         complete: Whether every tree that was asked for is listed. If not, a limit was reached.
         unproved: How many of the last trees are not proved to be the next ones: others may come before them.
-        optimal: How many are proved optimal: the first ones.
+        optimal: How many trees are proved optimal; they are the first ones.
         in_every_optimal: The ids of the units that all optimal trees have.
         in_some_optimal: The ids of the units that some optimal tree has.
-        partings: The object node nearest to the goals that the trees make in different ways; then such a node
-            for each group of trees that make it in one way.
+        partings: The object nodes where trees part, from the goals backwards. After the first node, each
+            group of trees that make it in one way has its own next node.
         trees: The trees, in order of their costs.
 
     Example:
@@ -209,7 +209,7 @@ class _Pool(NamedTuple):
     """Trees in order of their costs.
 
     ``complete``: whether all trees that were asked for are among them.
-    ``unproved``: the number of trees at the end of the list before which other trees might come.
+    ``unproved``: how many of the last trees are not proved to be the next ones.
     """
 
     trees: tuple[_CostedIds, ...]
@@ -228,9 +228,10 @@ def alternatives_or_union(
     limit: int = 100,
     **options: Unpack[CommonOptions],
 ) -> Result:
-    """Return the result of :func:`alternatives`; with ``union``, the units of every and of some optimal tree.
+    """Return the result of :func:`alternatives`, or with ``union`` the units that optimal trees have.
 
-    With ``union``, ``limit`` has no effect. Raises :class:`UserError` for ``union`` with ``best`` or
+    The union has the units that every optimal tree has and the units that some optimal tree has. With
+    ``union``, ``limit`` has no effect. Raises :class:`UserError` for ``union`` with ``best`` or
     ``different``.
     """
     if not union:
@@ -349,10 +350,11 @@ def _alternatives_of(problem: Problem, objectives: tuple[Objective, ...], pool: 
 
 
 def _partings(problem: Problem, trees: Sequence[frozenset[int]]) -> Iterator[Parting]:
-    """Yield the first node, from the goals backwards, that the trees make in different ways, if there is one.
+    """Yield the object nodes where trees part, each with the ways in which the trees make it.
 
-    The trees that make this node in one way are a group. For each group of several trees, the first node that
-    they make in different ways follows, and so on.
+    The first is the node nearest to the goals that the trees make in different ways. Trees that make it in
+    one way form a group. For each group, the node where its own trees part follows, and so on. If all trees
+    make all nodes in the same way, nothing is yielded.
     """
     groups = [tuple(range(len(trees)))]
     for group in groups:  # grows during the loop
@@ -369,9 +371,10 @@ def _first_parting(
 ) -> tuple[int, dict[tuple[int, ...], list[int]]] | None:
     """Return the first object node, from the goals backwards, that trees make in different ways.
 
-    ``trees`` maps indices of trees to their units. The node is returned by id, with a mapping from the units
-    that make it to the indices of the trees with these units. A unit that needs the node itself does not make
-    it. Nodes of the kitchen are skipped. Return ``None`` if the trees make every node in the same way.
+    ``trees`` maps indices of trees to their units. The result is the id of the node, and a mapping. A key has
+    the units by which some trees make the node; its value lists the indices of these trees. A unit that needs
+    the node itself does not make it. Nodes of the kitchen are skipped. Return ``None`` if the trees make
+    every node in the same way.
     """
     queue = list(problem.goals)
     for o in queue:  # grows during the loop
@@ -393,9 +396,9 @@ def _first_parting(
 def _most_different(pool: _Pool, count: int, settings: Settings) -> _Pool:
     """Return a pool of ``count`` trees of a pool, such that the most similar two differ as much as possible.
 
-    This is max-min diversity, solved by clingo. A pool of at most ``count`` trees is returned as it is. If a
-    limit comes first, the choice is the best that was found, or else a greedy one, and the pool is not
-    complete. The trees keep their order.
+    This is max-min diversity, solved by clingo. A pool of at most ``count`` trees is returned as it is. At a
+    limit, the best choice found is returned, or else a greedy one, and the pool is not complete. The trees
+    keep their order.
     """
     if len(pool.trees) <= count:
         return pool
@@ -448,10 +451,12 @@ def _rank_trees(
 ) -> _Pool:
     """Return a pool of at most ``max_trees`` trees, enumerated in order of costs.
 
-    ``max_loss`` is a share of the best value of the first objective: a tenth allows 11 units if 10 are best.
-    A loss of 0 allows only trees that are optimal by all objectives, and ``None`` allows all trees. The pool
-    is complete if no allowed tree is missing; for ``None``, also if it has ``max_trees`` trees. After a
-    limit, the pool ends with trees that were found but are not proved to be the next ones.
+    ``max_loss`` says how much worse than the best a tree may be by the first objective, as a share: a tenth
+    allows 11 units if 10 are best. ``0`` allows only trees that are optimal by all objectives. ``None``
+    allows all trees.
+
+    The pool is complete if it has all allowed trees. For ``None``, ``max_trees`` trees are enough. After a
+    limit, the last trees of the pool are not proved to be the next ones.
     """
     if problem.items is not None and max_loss == 0:
         plans, proved, complete = best_plans(problem, objectives, settings, caller().reporter, max_trees)
@@ -488,8 +493,8 @@ def _rank_trees(
 def _is_worse(costs: Costs, best: Costs, order: tuple[Objective, ...], max_loss: Fraction) -> bool:
     """Whether costs are worse than ``best`` by more than ``max_loss``.
 
-    A loss of 0 compares by all objectives in ``order``. Another loss is a share of the best value of the
-    first objective, which alone is compared.
+    If ``max_loss`` is 0, all objectives in ``order`` are compared. Otherwise, only the first objective is
+    compared, and ``max_loss`` is a share of its best value.
     """
     if not max_loss:
         return costs.key(order) > best.key(order)

@@ -193,7 +193,7 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
         proof_by_objective: Of an optimal answer, what proves each objective.
         costs: What the tree costs by every objective; null without a tree.
         lower_bound: By objective in order, a proved bound on its best value: no cost is less, no success is
-            greater. Only trees that are best by all objectives before it count.
+            greater. Only trees count that are best by all earlier objectives.
         used_up: Whether the steps, each done once, run where items are used up; null without a tree, and
             where items are used up anyway.
         units: The steps of the tree, in an order that executes; null without a tree.
@@ -203,8 +203,8 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
         soft_constraints: Every constraint that may be broken; empty without a tree.
         skipped: The goals that cannot be made and were left out, if that was asked for.
         goals_alone: For a few goals, the best tree for each by itself.
-        sum_of_goals_alone: What these trees cost by the first objective, added up, or multiplied for success;
-            null if a goal has no tree.
+        sum_of_goals_alone: What the trees of ``goals_alone`` cost by the first objective, added up, or
+            multiplied for success; null if a goal has no tree.
         serves: For several goals, the goals that each unit is needed for.
         cross_check: The checks by other engines, where they are requested.
         policy: With ``--retries``, the trees to follow, and their chance; null without a tree, or if a limit
@@ -351,7 +351,7 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
 
     @property
     def ending(self) -> Ending:
-        """The ending for the status, but ``LIMIT`` for a tree without the policy that was asked for."""
+        """``LIMIT`` for a tree without the policy that was asked for, else the ending for the status."""
         is_policy_missing = self.policy is None and self.units is not None
         return Ending.LIMIT if is_policy_missing else ending_of_status(self.status)
 
@@ -395,7 +395,7 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
         """Yield lines with the costs of each goal by itself, and the units that serve several goals.
 
         An answer for a single goal has no such lines. If the goals were not solved one by one, a line names
-        the option for that. If one of them has no tree, the shared units are left out.
+        the option for that. If a goal has no tree by itself, the shared units are left out.
         """
         if not isinstance(self.serves, tuple):
             return
@@ -512,7 +512,7 @@ def answer_problem(
 ) -> Answer:
     """Solve a problem; return the answer, with the seconds that reading took, if they are known.
 
-    ``reporter``: ``None`` for that of the caller.
+    If ``reporter`` is ``None``, the reporter of the caller is used.
     """
     return _answer_of(solve(problem, objectives, settings, reporter or caller().reporter))
 
@@ -522,15 +522,15 @@ def answer_under_rules(
 ) -> Answer:
     """Solve a problem under user rules, which may be about units that no goal needs.
 
-    Of a large store, no more is read than the answer takes. There are three ways:
+    Of a large store, no more is read than the answer takes. The first way that works is taken:
 
-    1. If :func:`near_goals` allows it, :func:`answer_from_store` answers.
-    2. Otherwise, the units near the goals and those that the rules require are read
-       (:func:`solve_nearby_under`). The outcome is the answer if it is proved, or if a limit is reached.
-    3. Otherwise, and for data that are no large store, :func:`_answer_with_reading` answers.
+    1. :func:`answer_from_store`, if :func:`near_goals` allows it.
+    2. For a large store, :func:`solve_nearby_under`. It reads only the units near the goals, and the units
+       that the rules require. Its outcome is the answer if it is proved, or if a limit is reached.
+    3. :func:`_answer_with_reading`.
 
-    If a limit or ctrl-C stops the third way, the answer is the tree of the second way, if that found one.
-    ``reporter``: ``None`` for that of the caller.
+    If a limit or ctrl-C stops the third way without a tree, a tree of the second way is the answer. If
+    ``reporter`` is ``None``, the reporter of the caller is used.
     """
     nearby = near_goals(problem, objectives, settings)
     if nearby is not None:
@@ -559,14 +559,14 @@ def answer_under_rules(
 def _answer_with_reading(
     problem: Problem, objectives: Sequence[Objective], settings: Settings, reporter: Reporter
 ) -> Answer:
-    """Solve over the units that the goals can need, and over all data if rules or a better tree need more.
+    """Solve a problem; read more than the units that the goals can need only if the answer takes it.
 
-    If no rule looks beyond a tree, the problem over the units that the goals can need is solved first,
-    without rules and then with them. A tree with another unit has a unit more than its goals need. So it
-    costs at least the optimum without rules, plus a unit. If it cannot be better, no more is read.
+    If no rule looks beyond a tree, the problem over the units that the goals can need is solved first. Any
+    tree with other units costs at least a unit more than the optimum without rules. If the first answer costs
+    no more than that, it is returned, and no more is read.
 
-    If a limit or ctrl-C stops the reading of all data, the tree found so far is returned as ``FEASIBLE``,
-    with the optimum without rules as its bound. Without such a tree, the interrupt is raised.
+    If a limit or ctrl-C stops the reading of all data, the tree found so far is returned as ``FEASIBLE``. The
+    optimum without rules is its bound. Without such a tree, the interrupt is raised.
     """
     problem = read_deferred(problem)
     is_partial = problem.network.object_numbers and problem.items is None and settings.constraints

@@ -115,8 +115,8 @@ class Assistance(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name(
     def show(self) -> Iterator[Block]:
         """Yield a table with a row for each number of helped units, and what is proved of the success.
 
-        The tree of the last row follows if ``most`` was given, or if it reaches the success to reach. If no
-        tree exists, one line says so in place of the table.
+        The tree of the last row follows if ``most`` was given, or if this tree reaches the success asked for.
+        If no tree exists, one line says so in place of the table.
         """
         yield from self.goal_lines()
         conditions, last = self.problem.conditions, self.rows[-1]
@@ -145,9 +145,9 @@ class Assistance(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name(
     def _cells(self) -> Iterator[tuple[str, ...]]:
         """Yield the cells of each row: the number of helped units, success, units and changes.
 
-        The changes are the helped units that were added or removed since the row before. For a tree that is
-        not proved best, they end with a remark and its bound. A row without a tree says so in the place of
-        the success.
+        The cell of changes lists the helped units that were added or removed since the row before. If the
+        tree is not proved best, this cell also has a remark and the bound. A row without a tree says so in
+        the place of the success.
         """
         motions = {step.id: step.motion for row in self.rows for step in row.units or ()}
         previous_helped: tuple[int, ...] = ()

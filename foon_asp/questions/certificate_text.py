@@ -105,9 +105,10 @@ def proof_size(content: Mapping[str, Any]) -> str:
 
 
 def bound_text(content: Mapping[str, Any]) -> str:
-    """Return in words the bound of a certificate on its first objective, and what its tree costs, if any.
+    """Return in words the bound of a certificate on its first objective, and the cost of its tree, if any.
 
-    ``content`` is the JSON object of the certificate. The gap between the two follows, except for success.
+    ``content`` is the JSON object of the certificate. The gap between bound and cost follows, except for
+    success.
     """
     objective, bound = content["objective"][0], content["bound"][0]
     text = (

@@ -34,8 +34,8 @@ def solve_with_certificate(
     """Solve a problem, and search for a certificate of its answer; return the answer with the certificate.
 
     A limit or ctrl-C ends the search without a certificate. With a ``file``, a certificate that was found is
-    written into it, and notes of the answer say what is proved. The whole network is read, unless a
-    part of a large store suffices. For a problem with stand-ins, it is read only if rules need it.
+    written into it, and notes of the answer say what is proved. The whole network is read, with two
+    exceptions: if a part of a large store suffices, and if no rules need it for a problem with stand-ins.
     """
     deadline = settings.effective_deadline
     settings = settings._replace(deadline=deadline)
@@ -71,7 +71,8 @@ def solve_with_certificate(
 def _certificate_subject(problem: Problem) -> Subject | None:
     """Return the data that a certificate is about, for a problem over a part of a store.
 
-    Return ``None`` for a problem over the whole network, without a dataset, or with own rates of its units.
+    Return ``None`` if the problem is over the whole network, has no dataset, or has units with their own
+    rates.
     """
     dataset = problem.origin
     if not problem.network.object_numbers or not isinstance(dataset, Dataset) or problem.own_rates:
@@ -86,9 +87,9 @@ def certify_tree(
 ) -> tuple[Certificate | None, Ending, str]:
     """Prove that an executable tree or plan is the best, without a search, and write the certificate.
 
-    Return the certificate or ``None``, how the proof ended, and in words what is proved. The ending is
-    ``DONE`` if the tree is proved best by every objective, ``NEGATIVE`` if a better tree is found, and else
-    ``LIMIT``. Without a certificate, no file is written.
+    Return the certificate or ``None``, how the proof ended, and in words what is proved. If the tree is
+    proved best by every objective, the ending is ``DONE``. If a better tree is found, it is ``NEGATIVE``.
+    Otherwise, it is ``LIMIT``. Without a certificate, no file is written.
     """
     objectives, certificate = levels(objectives), None
     try:
@@ -109,11 +110,11 @@ def certify_tree(
 
 
 def _prove_best(tree: Tree, objectives: tuple[Objective, ...], settings: Settings) -> Certificate | None:
-    """Return a certificate that a tree is the best, or of a bound on all trees.
+    """Return a certificate that a tree is the best, or a certificate of a bound on all trees.
 
-    Return ``None`` if no certificate is found, also when a limit or ctrl-C stops the search. Repeated units
-    of a tree count once, those of a plan as often as listed. Raises :class:`NotBestError` if a better tree is
-    found.
+    Return ``None`` if no certificate is found, also when a limit or ctrl-C stops the search. A tree counts a
+    repeated unit once; a plan counts it as often as it is listed. Raises :class:`NotBestError` if a better
+    tree is found.
     """
     problem, deadline, covered, units = (
         tree.problem,

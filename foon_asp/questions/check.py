@@ -115,7 +115,7 @@ class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ch
     def ending(self) -> Ending:
         """``NEGATIVE`` if the tree does not execute, has units of its own, or breaks a rule.
 
-        Otherwise, it is ``DONE``, or how the proof ended where a certificate is asked for.
+        Otherwise, if a certificate is asked for, it is the ending of the proof. Otherwise, it is ``DONE``.
         """
         sound = self.executes and not self.not_in_network and not self.breaks
         return self.proof_ending if sound else Ending.NEGATIVE
@@ -317,7 +317,7 @@ def check(
 
 
 def _user_rule_check(rules: "Settings", used_up: bool) -> "UserRuleCheck":
-    """Return the check that finds the user rules which a tree breaks, or with ``used_up`` a plan."""
+    """Return the check that finds which user rules a tree breaks, or a plan if ``used_up``."""
     from foon_asp.asp.user_rule_check import UserRuleCheck  # noqa: PLC0415 (takes clingo along)
 
     return UserRuleCheck(rules, used_up)

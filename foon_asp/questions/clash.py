@@ -39,14 +39,14 @@ class Clash(Value, frozen=True, kw_only=True):
     """Whether some constraints leave a tree, and if not, why.
 
     Attributes:
-        complete: Whether it is known if they clash; otherwise a limit came first.
+        complete: Whether it is known if the constraints clash; otherwise a limit came first.
         tree_exists_without_constraints: Whether there is a tree once all are dropped.
         constraints: All constraints.
         smallest_clash: A smallest set of constraints that cannot hold together; empty if none is known.
         smallest_proved: Whether no fewer constraints clash.
-        cheapest_to_drop: The cheapest constraints to drop so that the others leave a tree; where a limit came
-            first, perhaps more than these.
-        answer: The best tree by units without these; null where it is not known.
+        cheapest_to_drop: The cheapest constraints to drop so that the others leave a tree. If a limit came
+            first, cheaper ones may suffice.
+        answer: The best tree by units without the dropped constraints; null where it is not known.
 
     Example:
         >>> ice = foon_asp.load().problem("ice")
@@ -83,9 +83,10 @@ class Clash(Value, frozen=True, kw_only=True):
         return self.answer.ending
 
     def lines(self, conditions: str) -> Iterator[str]:
-        """Yield lines on constraints that clash, those cheapest to drop, and the best tree without these.
+        """Yield lines on the smallest clash, on the cheapest constraints to drop, and on the best tree.
 
-        ``conditions`` names the conditions under which claims hold, such as ``strict containers``.
+        The best tree is the one without the dropped constraints. ``conditions`` names the conditions under
+        which claims hold, such as ``strict containers``.
         """
         dropped, answer = self.cheapest_to_drop, self.answer
         if not self.tree_exists_without_constraints:
@@ -136,14 +137,14 @@ class Clash(Value, frozen=True, kw_only=True):
 def find_clash(problem: Problem, settings: Settings, own_weights: Mapping[Constraint, int]) -> Clash:
     """Find a smallest clash of the constraints in ``settings``, and the cheapest constraints to drop.
 
-    It also finds the best tree by units without the dropped constraints. ``own_weights`` are the costs of
-    dropping a rule of a constraint, 1 by default. At a limit, the result has what was found by then.
+    The result also has the best tree by units without the dropped constraints. ``own_weights`` has the cost
+    of dropping a rule of a constraint; the default is 1. At a limit, the result has what was found by then.
 
     The smallest clash is a smallest minimal unsatisfiable subset (MUS). It is found by implicit hitting sets
     (Ignatiev, Previti, Liffiton and Marques-Silva, Smallest MUS Extraction with Minimal Hitting Set
-    Dualization, CP 2015). A correction set is a set of constraints without which a tree exists. Each round
-    takes a smallest set that hits all known correction sets. If no tree keeps to this set, it is the clash;
-    else a correction set is added.
+    Dualization, CP 2015). A correction set is a set of constraints without which a tree exists. Each
+    iteration takes a smallest set of constraints that hits all correction sets found so far. If no tree keeps
+    to this set, it is the clash. Otherwise, a further correction set is found.
     """
     deadline = settings.effective_deadline
     settings = settings._replace(deadline=deadline)
@@ -159,7 +160,7 @@ def find_clash(problem: Problem, settings: Settings, own_weights: Mapping[Constr
     hitting_set_encoding = (question_encoding("blame.lp"),)
 
     def clash_with(**fields: Any) -> Clash:
-        """Return the result with all constraints and these fields."""
+        """Return the result with all constraints, and with other attributes from ``fields``."""
         return Clash(constraints=tuple(by_number.values()), **fields)
 
     def constraints_of(numbers: Iterable[int]) -> tuple[WeightedConstraint, ...]:

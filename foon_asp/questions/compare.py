@@ -84,9 +84,9 @@ class Compared(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("c
         return Ending.DONE if self.proved else Ending.LIMIT
 
     def show(self) -> Iterator[Block]:
-        """Yield the table, the trees where they are asked for, and for several goals a summary.
+        """Yield the table, the trees if they are asked for, and a summary if there are several goals.
 
-        With ``published``, there is only the table of published figures, and with ``all_makeable`` only the
+        With ``published``, yield only the table of published figures. With ``all_makeable``, yield only the
         summary.
         """
         if isinstance(self.published, PublishedTable):
@@ -146,8 +146,8 @@ def _pose_goals(
     """Return the problem whose goals are compared, in a tuple, as the first argument of :func:`compare`.
 
     With ``all_makeable``, the problem has an arbitrary goal, which :func:`compare` replaces. With
-    ``published``, the goals are by default those of the published table. Other goals raise
-    :class:`UserError`, and a container rule other than that of the table is reported as a warning.
+    ``published``, the goals are by default those of the published table. A goal outside of the table raises
+    :class:`UserError`. Another container rule than the one of the table causes a warning.
     """
     if published:
         table = read_published(published_file())

@@ -136,7 +136,7 @@ def summary_tables(summaries: Sequence[Summary], proved: bool) -> Iterator[Block
     """Yield summary tables over many goals: how many trees execute, and their ratios to the optimum.
 
     Columns for cycles, broken rules and trees better than the optimum are there only if some tree has them.
-    The shares of trees that execute are those of the trees that a search returned, not of all goals.
+    The share of trees that execute is of the trees that a search returned, not of all goals.
 
     Parameters:
         summaries: One for each search.

@@ -41,7 +41,10 @@ def write_disagreement(request: ClaimedAnswer, disagreement: DisagreementError) 
 
 
 def disagreement_name(outcome: Outcome) -> str:
-    """Return the name of the file of a report, with a digest of the network and the ids of the goals."""
+    """Return the name of the file of a report.
+
+    The name has a digest of the network, and the ids of the goals.
+    """
     problem = outcome.problem
     return (
         f"foon-asp-disagreement-{_digests(problem)['network'][:8]}-{'-'.join(map(str, problem.goals))}.json"
@@ -100,7 +103,7 @@ def disagreement_json(request: ClaimedAnswer, disagreement: DisagreementError) -
 
 
 def _rule_texts(constraints: Iterable[Constraint]) -> dict[Constraint, str]:
-    """Return the text of the rules of each constraint, with those of included files."""
+    """Return, for each constraint, the text of its rules and of the files that they include."""
     texts: dict[Constraint, str] = {}
     for constraint in constraints:
         definition = find_constraint(constraint)
@@ -112,8 +115,8 @@ def _rule_texts(constraints: Iterable[Constraint]) -> dict[Constraint, str]:
 def _data_files(problem: Problem) -> dict[str, str]:
     """Return the texts of a data folder for a problem, by file name.
 
-    Rates and prices of units are among them if the problem has any. Below level 3, the texts describe the
-    network of level 3 that the network of the problem was made of.
+    If the problem has rates and prices of units, they are included. Below level 3, the texts describe the
+    network of level 3 from which the network of the problem was made.
     """
     network = problem.network
     detailed = network.detailed or network

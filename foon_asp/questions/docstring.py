@@ -28,8 +28,8 @@ def complete_docstring(
 ) -> str | None:
     """Return the docstring of a function with descriptions of its parameters, in the order of the signature.
 
-    ``texts`` has descriptions by name; :func:`docstring_entries` take precedence. A parameter without a
-    description is left out. If the docstring has no section ``Parameters``, it is inserted before
+    ``texts`` has descriptions by name. A description that the docstring has already takes precedence. A
+    parameter without a description is left out. If there is no section ``Parameters``, one is inserted before
     ``Returns``, or else at the end. Return ``None`` for a function without docstring.
     """
     if ask.__doc__ is None:  # python -OO

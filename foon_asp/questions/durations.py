@@ -23,7 +23,7 @@ def stated_durations(durations: Durations | None) -> dict[str, Duration]:
 
 
 def duration_of(duration: Number | Duration, motion: str) -> Duration:
-    """Return the duration of a motion with exact seconds; a mere number of seconds is no passive duration.
+    """Return the duration of a motion with exact seconds; a plain number is a duration that is not passive.
 
     Raises :class:`UserError` if the duration is not above 0.
     """

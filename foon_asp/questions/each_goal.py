@@ -36,7 +36,7 @@ class EachGoal(Result, frozen=True, kw_only=True, tag=schema_name("each")):
         return next(ending for ending in (Ending.LIMIT, Ending.NEGATIVE, Ending.DONE) if ending in endings)
 
     def show(self) -> Iterator[Block]:
-        """Yield the answers one after the other; answers with the same tree share one display of it."""
+        """Yield the answers one after the other; answers with the same tree are shown together."""
         from foon_asp.questions.answer import Answer  # noqa: PLC0415 (takes the solver along)
 
         for number, (first, *others) in enumerate(self._groups_by_tree()):
@@ -76,7 +76,7 @@ class EachGoal(Result, frozen=True, kw_only=True, tag=schema_name("each")):
         raise UserError("these are steps for several goals: name one with --goal")
 
     def remark(self, format_: str) -> str:
-        """Return the remarks that a format cannot express, answer by answer."""
+        """Return remarks on what a format cannot hold, answer by answer."""
         return "\n".join(filter(None, (answer.remark(format_) for answer in self.answers)))
 
     def write_chart(self, file: File) -> None:

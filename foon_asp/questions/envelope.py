@@ -28,8 +28,9 @@ class IntervalEnd(NamedTuple):
     """One end of the interval of a rate in which the tree stays optimal, and the best tree beyond.
 
     ``at``: the rate at which another tree is as good; ``None`` if no rate on this side makes another tree
-    better.
-    ``beyond``: the ids of the units of the other tree, in an order that executes; ``None`` if ``at`` is.
+        better.
+    ``beyond``: the ids of the units of the other tree, in an order that executes; ``None`` if ``at`` is
+        ``None``.
     ``proved``: false if a limit came first; the true end may then be nearer to the rate.
     """
 
@@ -41,9 +42,9 @@ class IntervalEnd(NamedTuple):
 class Envelope:
     """A search for the interval of each success rate in which the best tree stays the best.
 
-    The successes of all trees, as functions of one rate, have an upper envelope. The interval is where the
-    best tree is on it. docs/dev/questions.md has the argument. ``motions`` are the motions that a tree for
-    the goals may have.
+    The success of each tree is a function of the rate. The upper envelope of the functions is the best
+    success at each rate. The interval is where the best tree is on the envelope. docs/dev/questions.md has
+    the argument. ``motions`` are the motions that a tree for the goals may have.
     """
 
     def __init__(self, problem: Problem, tree: tuple[int, ...], settings: Settings) -> None:
@@ -66,7 +67,7 @@ class Envelope:
             self._free_to_rise = set()
 
     def unit_count(self, motion: str) -> int:
-        """Return the number of units of the best tree with a motion and without a rate of their own."""
+        """Return how many units of the best tree have a motion, and no rate of their own."""
         return self._count_by_motion(self._tree)[motion]
 
     def end(self, motion: str, above: bool) -> IntervalEnd:
@@ -98,12 +99,14 @@ class Envelope:
             return IntervalEnd(None, None, proved=False)
 
     def _end_from(self, motion: str, degree: int, raised_rate: Fraction) -> IntervalEnd:
-        """Return the end of the interval of a motion's rate on the side of a distant rate.
+        """Return the end of the interval of a motion's rate, searched from a distant rate inwards.
 
-        The distant rate to the power of ``degree`` is ``raised_rate``. A tree that is better there gives the
-        next rate to try, which is nearer to the present one, and so on. At degree 0, the motion has the rate
-        ``raised_rate`` and all others have 1, so that the tree with the fewest units of the motion is found.
-        An end is not proved if the last search reached a limit.
+        ``raised_rate`` is the distant rate to the power of ``degree``. If a tree is better there, the rate at
+        which it is as good as the present tree is tried next. This repeats until no tree is better. If the
+        last search reached a limit, the end is not proved.
+
+        At degree 0, the motion has the rate ``raised_rate``, and all others have 1. This finds the tree with
+        the fewest units of the motion.
         """
         tree = self._as_function(motion, self._tree)
         rate = Root(1, (self._problem.rates or {})[motion])
@@ -120,10 +123,11 @@ class Envelope:
             degree, raised_rate = at.degree, at.of
 
     def _better_tree(self, motion: str, degree: int, raised_rate: Fraction) -> tuple[_Tree | None, bool]:
-        """Return a tree that is better at another rate of a motion, or ``None``, and whether this is proved.
+        """Return a tree that is better at another rate of a motion, and whether the search was complete.
 
-        The other rate to the power of ``degree`` is ``raised_rate``. For the search, all rates are raised to
-        this power. Then the other rate is rational, and the order of trees by success stays the same.
+        Without a better tree, return ``None`` in its place. ``raised_rate`` is the other rate to the power of
+        ``degree``. The search raises all rates to this power. Then the other rate is rational, and the order
+        of trees by success stays the same.
         """
         outcome, better = self._solve_varied(_at_rate(self._problem, motion, degree, raised_rate))
         proved = outcome.status is Status.OPTIMAL
@@ -132,12 +136,11 @@ class Envelope:
         return self._as_function(motion, outcome.units), proved
 
     def _motions_free_to_rise(self) -> set[str]:
-        """Return motions whose rates may rise to 1 while the tree stays optimal; many are tested at once.
+        """Return motions whose rates may each rise to 1 while the tree stays optimal; there may be more.
 
-        A test sets to 1 the rates of all units of these motions outside the tree. If the tree stays optimal,
-        it also stays so if only one of the motions rises: no other tree gains more from one motion than from
-        all. Otherwise the motions by which the better tree gains are removed, and the test is repeated. If a
-        limit comes first, the set is empty.
+        A test covers many motions at once: it sets to 1 the rates of their units outside the tree. If the
+        tree stays optimal, all these motions are returned. Otherwise, the motions by which the better tree
+        gains are removed, and the test is repeated. If a limit comes first, the set is empty.
         """
         network, own_rates = self._problem.network, self._problem.own_rates
         motions = set(self.motions)
@@ -157,7 +160,7 @@ class Envelope:
         return motions
 
     def _solve_varied(self, varied: Problem) -> tuple[Outcome, bool]:
-        """Return the optimum at other rates, and whether it is better than the best tree of the envelope.
+        """Return the optimum of a problem with other rates, and whether it beats the tree of the envelope.
 
         After a limit, the outcome is the best tree found, if any. Raises :class:`BugError` if a proved
         optimum is worse than the tree of the envelope.
@@ -187,7 +190,8 @@ class Envelope:
 def _at_rate(problem: Problem, motion: str, degree: int, raised_rate: Fraction) -> Problem:
     """Return a problem with all rates to the power of ``degree``, and ``raised_rate`` for the motion.
 
-    Units with own rates keep these, to the power. User rules see the rates as given.
+    Own rates of units are raised to the power, also for units with the motion. User rules see the rates as
+    given.
     """
     raised = {name: rate**degree for name, rate in (problem.rates or {}).items()}
     own_rates = {unit: rate**degree for unit, rate in problem.own_rates.items()}

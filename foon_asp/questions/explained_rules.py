@@ -81,8 +81,8 @@ class ExplainedRule(Value, frozen=True):
     def lines(self, similar: int) -> Iterator[str]:
         """Yield lines with the place, text and effect of a rule, and whether it looks beyond the tree.
 
-        The last is left out for a helper rule and for a rule without effect. ``similar`` is the number of
-        further facts like this one, which are only counted.
+        For a helper rule and for a rule without effect, nothing is said of looking beyond the tree.
+        ``similar`` is the number of further facts like this one, which are only counted.
         """
         yield str(Source(self.file, self.line))
         if self.constraint:

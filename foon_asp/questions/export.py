@@ -126,10 +126,10 @@ def _pose_export(
 
 
 def _has_merged_copies(problem: Problem, items: str | None) -> bool:
-    """Return whether ``items`` is ``set``: then all copies of an object node are one.
+    """Return whether ``items`` is ``set``, by which all copies of an object node are one.
 
-    Raises :class:`UserError` for an unknown word, and if ``items`` contradicts the problem. ``None`` stands
-    for the items of the problem as they are.
+    ``None`` stands for the items of the problem as they are. Raises :class:`UserError` for an unknown word,
+    and if ``items`` contradicts the problem.
     """
     if items not in {None, *_ITEM_RULES}:
         raise UserError(f"found items={items!r}, expected one of {', '.join(_ITEM_RULES)}")
@@ -241,7 +241,7 @@ def to_unified_planning(
 ) -> Any:
     """Return the goals of a problem as a problem of unified-planning, with the names that PDDL has.
 
-    :func:`foon_asp.read_plan` reads its plans back. The package comes with ``foon-asp[planning]``.
+    :func:`foon_asp.read_plan` reads the plans for it back. The package comes with ``foon-asp[planning]``.
 
     Parameters:
         objectives: What actions cost: a name, names separated by commas, or several names.

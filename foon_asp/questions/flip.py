@@ -1,4 +1,4 @@
-"""The rates at which another tree becomes the best, as one success rate changes: exact and as decimals."""
+"""Rates at which another tree becomes the best, as one success rate changes: exact, and as decimals."""
 
 from decimal import Context, Decimal
 from fractions import Fraction
@@ -24,7 +24,7 @@ class Flip(NamedTuple):
     def inwards(self) -> Fraction:
         """The value ``at``, rounded towards ``rate`` to four significant digits.
 
-        It has more digits if it would pass ``rate`` with four.
+        If four digits would pass ``rate``, it has more.
         """
         digits = 4
         if self.at.rational == self.rate:
@@ -50,7 +50,7 @@ class Flip(NamedTuple):
             digits *= 2
 
     def change(self, digits: int) -> tuple[Fraction, Fraction]:
-        """Return a lower and an upper bound on the relative change of the rate, which is not negative.
+        """Return a lower and an upper bound on the size of the relative change of the rate, without its sign.
 
         The quotient of ``at`` and ``rate`` is enclosed in ``digits`` significant digits. If it is rational,
         both bounds are equal to the change.
@@ -63,10 +63,10 @@ class Flip(NamedTuple):
     def __lt__(self, other: object) -> bool:
         """Compare relative changes exactly, by as many digits as it takes.
 
-        A factor is the quotient of ``at`` and ``rate``. Equal factors are compared first. After that, two
-        changes that are not rational cannot be equal. If both are above or both below, their factors would be
-        equal. Otherwise, the factors would add up to 2. But positive roots, none a rational multiple of
-        another, are linearly independent over the rational numbers (Besicovitch, 1940).
+        A factor is the quotient of ``at`` and ``rate``. Equal factors are found first. Other changes can only
+        be equal if both are rational. Proof: equal changes in one direction have equal factors. In opposite
+        directions, the factors add up to 2. But positive roots are linearly independent over the rational
+        numbers if none is a rational multiple of another (Besicovitch, 1940).
         """
         assert isinstance(other, Flip)
         if self.at.divide_by(self.rate) == other.at.divide_by(other.rate):

@@ -1,4 +1,4 @@
-"""The best tree of which a person does at most M units, for one M after another."""
+"""The best trees of which a person does at most 0, 1, 2, ... units."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
@@ -20,13 +20,14 @@ class PricedHelp:
     """Lagrangian relaxation of the number of helped units: help for a unit costs a factor of success.
 
     At a price q, a helped unit counts with q times the person's rate. Let S be the optimal success at this
-    price. A tree with help for M units has at most the success S / q^M, or it would beat the optimum. If the
-    optimal tree at the price reaches this bound with help for M units, it is optimal for M, also by fewest
-    units, which break ties at the price. If no price closes the gap, trees are enumerated in order of success
-    at the price with the least bound, until the best tree seen is as good as any later one can be.
+    price. Then a tree with help for M units has at most the success S / q^M. If the optimal tree at the price
+    reaches this bound with help for M units, it is optimal for M. Ties are broken by fewest units.
 
-    The prices tried are the breakpoints at which help for another motion pays. The logarithm of the bound is
-    convex in the logarithm of the price, so the least bound is found where the bound first rises.
+    Otherwise, another price is tried. If no price closes the gap, trees are enumerated at the price with the
+    least bound, in order of success. The enumeration ends when no later tree can be better.
+
+    The prices tried are those at which help for another motion begins to pay. The logarithm of the bound is
+    convex in the logarithm of the price. So the least bound is found where the bound first rises.
     """
 
     def __init__(
@@ -69,7 +70,7 @@ class PricedHelp:
         return self._optimum_at(Fraction(1))
 
     def helped_units(self, max_helped: int, units: Iterable[int]) -> list[int]:
-        """Return those of the ``units`` where help raises the rate most, at most ``max_helped``.
+        """Return at most ``max_helped`` of the ``units``: those whose rates help raises most.
 
         Units that the person does not do better are left out. The unit with the greatest gain comes first.
         """
@@ -112,14 +113,14 @@ class PricedHelp:
         return best._replace(bounds={Objective.SUCCESS: min(bounds)} if bounds else {})
 
     def _with_help(self, max_helped: int, units: tuple[int, ...]) -> Outcome:
-        """Return the feasible outcome whose tree has ``units``, with help for :meth:`helped_units`."""
+        """Return a feasible outcome for the tree of ``units``, with a person for :meth:`helped_units`."""
         motions = self._problem.network.motions
         own_rates = {unit: self._better[motions[unit]] for unit in self.helped_units(max_helped, units)}
         problem = replace(self._problem, own_rates=own_rates)
         return Outcome(problem, _SUCCESS, Status.FEASIBLE, units, problem.costs(units), {}, {})
 
     def _optimum_at(self, price: Fraction) -> Outcome:
-        """Return the optimum at a price, the factor of success that help for a unit costs; it is cached.
+        """Return the optimum at a price, solved once for each price.
 
         Only the first search reports to the reporter.
         """
@@ -131,7 +132,10 @@ class PricedHelp:
         return self._outcomes[price]
 
     def _problem_at(self, price: Fraction) -> Problem:
-        """Return the problem with the person's rates times the price, where that exceeds the robot's rate."""
+        """Return the problem at a price of help.
+
+        The rate of a motion is the robot's rate, or the person's rate times the price if that is greater.
+        """
         rates = {m: max(rate, self._better.get(m, 0) * price) for m, rate in self._rates.items()}
         return replace(self._problem, rates=rates)
 
@@ -155,7 +159,7 @@ class CountedHelp:
         self._twins = replace(problem, network=network.with_copies(units), own_rates=own_rates)
 
     def best(self, max_helped: int) -> Outcome:
-        """Return the best tree with help for at most ``max_helped`` units, without copies of units.
+        """Return the best tree with help for at most ``max_helped`` units; copies are turned into originals.
 
         Only the first search reports to the reporter.
         """
@@ -202,10 +206,15 @@ def helped_trees(
     """Find the best trees with help for 0, 1, 2, ... units.
 
     ``person`` has the person's rates by motion; ``None`` for a person who never fails. The person takes over
-    only motions with a higher rate than the robot's. The rows end with ``max_helped`` units, with the first
-    tree whose success is at least ``wanted``, or where more help changes nothing. ``None`` for either lifts
-    its condition. At a limit or ctrl-C, the rows end early, and the last may be unproved. An unproved row
-    repeats the tree of the row before if no better one was found. Ctrl-C before the first row is raised.
+    only motions with a higher rate than the robot's. The last row is the first for which one of three
+    conditions holds:
+
+    - it has help for ``max_helped`` units; ``None`` for no such condition
+    - the success of its tree is at least ``wanted``; ``None`` for no such condition
+    - more help changes nothing
+
+    At a limit or ctrl-C, the rows end early, and the last may be unproved. If no better tree was found for
+    it, it repeats the tree of the row before. Before the first row, ctrl-C raises ``KeyboardInterrupt``.
 
     Raises :class:`UserError` for wrong rules, and for rules that look beyond the tree and at who does a unit.
     """

@@ -121,6 +121,6 @@ def module_name(verb: str) -> str:
 
 
 def question_name(verb: str) -> str:
-    """Return the name that a verb's question has in its module; by default, it is that of the module."""
+    """Return the name that a verb's question has in its module; by default, the name of the module."""
     names = INDEX[verb].python
     return names[0] if names else module_name(verb)

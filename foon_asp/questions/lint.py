@@ -224,9 +224,10 @@ def find_findings(
 
 
 def linted_files(paths: Iterable[Path], contents: Iterable[Path] = ()) -> Sequence[Path]:
-    """Return all files to lint, each once: ``paths``, the files and tables of folders, and ``contents``.
+    """Return all files to lint, each once: files in ``paths``, files in their folders, and ``contents``.
 
-    ``contents`` are the paths of files whose content is not read from disk.
+    Tables in the folders are among the files. ``contents`` are the paths of files whose content is not read
+    from disk.
     """
     path_list = list(paths)
     on_disk = with_tables(path_list, (file for file, _ in foon_files(path_list)))

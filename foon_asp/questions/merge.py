@@ -60,7 +60,7 @@ class Merged(Result, frozen=True, kw_only=True, tag=schema_name("merge")):
     """Lines on what was skipped or assumed in reading."""
 
     def show(self) -> Iterator[Block]:
-        """Yield one line with the counts; zero prices and zero lines left out are not named."""
+        """Yield one line with the counts; counts of prices and skipped lines are left out if they are 0."""
         source_text = str(self.store or counted(len(self.files), "file", ","))
         parts = [f"{source_text}: {counted(self.units, 'unit', ',')} of {self.copies:,} read"]
         parts.append(counted(self.objects, "object node", ","))
@@ -133,8 +133,8 @@ def merge(
         store: The store to write, for networks too large to read for each question. Of a single folder, it
             also keeps the kitchen, rates, utensils, goals and prices.
         unit_prices: The file with the prices of units, used when copies of a unit have different ones.
-        unit_amounts: The file that says how many of an object node units take and make; it overrides
-            what the networks state.
+        unit_amounts: The file of amounts, by which units take and make several copies of an object node. It
+            overrides what the networks state.
         lenient: Whether lines that are not understood are skipped instead of being errors.
 
     Returns:
@@ -159,7 +159,7 @@ def merge(
 
 
 def merge_files(data_files: DataFiles, store: Path | None, lenient: bool) -> Merged:
-    """Merge networks in memory, or with a path ``store`` into a store.
+    """Merge networks in memory; if ``store`` is a path, merge them into a store there.
 
     The store also keeps all other data files. A file named twice is read once. ``lenient`` skips lines that
     are not understood. Raises :class:`UserError` if there is no unit, or if copies of a unit have different

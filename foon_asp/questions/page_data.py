@@ -29,7 +29,7 @@ class PageData(Document, frozen=True, kw_only=True, tag=schema_name("view")):
         answer: The best tree; null for a page about a whole network.
         rates: The success rate of every unit in the trees; null where no rates are known.
         searches: The results of the searches; empty unless they were asked for.
-        lasting: Where items are used up: the best tree if items lasted; else null.
+        lasting: The best tree if items lasted; null unless items are used up.
         without_rules: The best tree without user rules; null where there are none.
         alternatives: The best trees; null unless they were asked for.
         front: The Pareto front; null unless it was asked for.

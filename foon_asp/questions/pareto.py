@@ -72,7 +72,7 @@ class Point(Value, frozen=True):
 
     @property
     def ids(self) -> tuple[int, ...]:
-        """The units by id in the whole network, in an order that executes."""
+        """The ids of the units in the whole network, in an order that executes."""
         return tuple(step.id for step in self.units if step.id is not None)
 
 
@@ -130,10 +130,10 @@ class Front(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("pare
         return Ending.DONE if self.points else Ending.NEGATIVE
 
     def show(self) -> Iterator[Block]:
-        """Return what is proved, and the points as a table with the units that change from point to point.
+        """Yield what is proved, and the points as a table with the units that change from point to point.
 
-        If trees were asked for, the units of the first tree follow, and for each further tree the units that
-        it drops (-) and adds (+). Notes name the trees that would not run if items were used up.
+        If trees were asked for, the units of the first tree follow. For each further tree, the dropped units
+        (-) and the added units (+) follow. Notes name the trees that would not run if items were used up.
         """
         yield from self.goal_lines()
         yield self._claim_text()
@@ -349,10 +349,10 @@ def _best_trees(
 ) -> Iterator[Outcome]:
     """Yield outcomes with trees of the front, by the lexicographic epsilon-constraint method.
 
-    The caller appends each tree to ``points`` before it takes the next outcome. Each outcome is the best by
-    ``order`` among the trees that cost less than every tree in ``points`` by some objective other than the
-    first. If no such tree exists, nothing more is yielded. An outcome without a proof is yielded as well; the
-    caller stops there.
+    The caller appends each tree to ``points`` before it takes the next outcome. A tree qualifies if, compared
+    with each tree in ``points``, it costs less by some objective other than the first. Each outcome is the
+    best qualifying tree by ``order``. The outcomes end when no tree qualifies. An outcome without a proof is
+    yielded as well; the caller stops there.
     """
     reporter = caller().reporter
     while True:
@@ -369,13 +369,14 @@ def _best_trees(
 def _best_plans(
     problem: Problem, order: tuple[Objective, ...], settings: Settings, points: Sequence[_FoundTree]
 ) -> Iterator[Outcome]:
-    """Yield outcomes with plans of the front: each is the best by ``order`` in the boxes that remain.
+    """Yield outcomes with plans of the front, by dividing the space of costs into boxes.
 
-    A box has an upper bound on the costs by each objective but the first. A plan is in some box if, compared
-    with each plan so far, it costs less by at least one of these objectives, which may differ from plan to
-    plan. Each box is solved once, and the best of the plans is yielded. The boxes that contain its costs are
-    then divided. If no box has a plan, nothing more is yielded. An outcome without a proof is yielded as
-    well; the caller stops there.
+    A box is an upper bound on the costs by each objective but the first. Together, the boxes have the plans
+    that are not dominated so far: compared with each plan yielded, they cost less by one of the bounded
+    objectives. Each box is solved once. The best plan of all boxes by ``order`` is yielded. Then the boxes
+    that contain its costs are divided. The outcomes end when no box has a plan.
+
+    An outcome without a proof is yielded as well; the caller stops there.
     """
     reporter, other_objectives = caller().reporter, order[1:]
     boxes: list[Box] = [(None,) * len(other_objectives)]

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Command(Protocol):
-    """A command line with a question: its data and options, as functions that pose its problem see them."""
+    """A command line as seen by functions that pose its problem: its data and its options."""
 
     @property
     def dataset(self) -> Dataset:
@@ -32,15 +32,15 @@ class Command(Protocol):
         """Whether the command names a network or a folder of data."""
 
     def given(self, option: str) -> bool:
-        """Return whether the value of an option is from the command line, and no default.
+        """Return whether the value of an option is from the command line, and not a default.
 
-        The option is named by its parameter.
+        ``option`` is the name of its parameter.
         """
 
     def unnamed_goals(self) -> list[ObjectNode]:
         """Return the goals of a command without ``--goal``, which are answered one by one.
 
-        They are the goals that the data list, or else those that are assumed of the data.
+        The goals are those that the data list, or else goals that are assumed for the data.
         """
 
     def add_sources(self, sources: Sequence[Path]) -> None:
@@ -78,13 +78,15 @@ def pose_problem(
     all_goals: bool = False,
     amounts: Sequence[int] = (),
 ) -> tuple[Problem]:
-    """Return the problem of the named goals, as a tuple of one; a tree of it makes all of them.
+    """Return the problem of the named goals, in a tuple; a tree for this problem makes all of its goals.
 
-    With ``all_goals``, the goals are those named, or else all of the goals file; the caller then solves for
-    each goal by itself. ``amounts`` are the copies wanted of each goal; with amounts, items are used up.
-    ``items`` is ``None`` for questions without this option; items then last. ``stock`` and ``stays`` are
-    files about items that are used up. Of a large store, only the units nearest to the goals are read now.
-    Raises :class:`UserError` if there is no goal.
+    With ``all_goals``, the problem is not solved as it is: the caller solves for each goal by itself. If no
+    goal is then named, the problem has all goals of the goals file. ``amounts`` are the copies wanted of each
+    goal. If there are amounts, items are used up. ``items`` is ``None`` for questions without this option;
+    then items last. ``stock`` and ``stays`` are files about items that are used up.
+
+    Of a large store, only the units nearest to the goals are read now. Raises :class:`UserError` if there is
+    no goal.
     """
     dataset = command.dataset
     with command.reading():
@@ -106,8 +108,8 @@ def pose_data(command: Command) -> "tuple[Foon]":
 def is_picture_of_tree(command: Command, goals_named: Sequence[str]) -> bool:
     """Return whether a picture is of a tree; otherwise, it is of the whole network.
 
-    It is of a tree if goals are named, or if a recipe is named as an argument and not by an option. Raises
-    :class:`UserError` for a recipe with several goals, since a picture is of one tree.
+    If goals are named, the picture is of a tree. If a recipe is an argument and not an option, it is of a
+    tree as well. Raises :class:`UserError` for a recipe with several goals, since a picture is of one tree.
     """
     if goals_named or not command.given("sources"):
         return bool(goals_named)

@@ -1,4 +1,4 @@
-"""The problem of a tree or plan in a file, with its goals, and its data where the command names none."""
+"""Problems of trees and plans in files, with their goals and their data."""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
@@ -28,10 +28,10 @@ def pose_plan(
 ) -> tuple[Problem, Tree]:
     """Read a plan from a file, and return its problem and the plan.
 
-    ``named`` has one entry: the file, by the name of the question's parameter. Goals, a container rule and
-    amounts of goals on the command line override those that an answer in the file states. The data are those
-    of :func:`data_for_trees`, which may add the file to the networks of the command. If items last, the
-    amounts of the answer are ignored.
+    ``named`` has one entry: the file, by the name of the question's parameter. An answer in the file may
+    state goals, a container rule and amounts of goals. The command line overrides them. If items last, the
+    amounts of the answer are ignored. The data are those of :func:`data_for_trees`, which may add the file to
+    the networks of the command.
     """
     (plan,) = named.values()
     answer = read_answer(plan)
@@ -42,7 +42,10 @@ def pose_plan(
     with command.reading():
 
         def used_up(goals: Sequence[int]) -> UsedUp | None:
-            """Return how items are used up for goals, by id, in the amounts named or of the answer."""
+            """Return how items are used up for goals, which are given by id.
+
+            The amounts are those on the command line, or else those of the answer.
+            """
             wanted = [answer.wanted.get(dataset.names.node(goal), 1) for goal in goals]
             stated = amounts or (wanted if answer.wanted and items != "lasting" else ())
             return items_for(dataset, goals, stated, items, stock, stays)
@@ -56,8 +59,8 @@ def pose_plan_or_state(
 ) -> tuple[Problem, Tree | None]:
     """Return the problem of the plan in a file, and the plan.
 
-    With a ``state``, return the problem of the goals, and ``None`` in place of a plan. Items then last, and
-    the file of a plan serves as one more network; the file of the state is not read here. Raises
+    With a ``state``, return the problem of the goals, in which items last, and ``None`` in place of a plan.
+    The file of a plan then serves as one more network. The file of the state is not read here. Raises
     :class:`UserError` if there is neither a plan nor a state, and for a state with items that are used up.
     """
     if state is None:
@@ -79,11 +82,17 @@ def listed_tree(
     containers: str,
     used_up: Callable[[Sequence[int]], UsedUp | None] | None = None,
 ) -> Tree:
-    """Return the tree that a file lists, for the named goals or else the goals of the answer in the file.
+    """Return the tree that a file lists, with its goals.
 
-    Without any such goal, the tree is for the only goal of the data. If the data have none or several, it is
-    for what the last step makes, and a warning names this goal. ``used_up`` returns how items are used up for
-    goals, which it takes by id; without it, items last. Raises :class:`UserError` where no goal can be found.
+    The goals are the first that exist in this order:
+
+    - the named goals
+    - the goals of the answer in the file
+    - the only goal of the data
+    - what the last step makes, which a warning names
+
+    ``used_up`` takes the ids of goals and returns how items are used up for them; without it, items last.
+    Raises :class:`UserError` where no goal can be found.
     """
     ordered = not answer.numbers
     listed = answer.with_units(file, lambda: dataset.whole_network).units or ()
@@ -108,8 +117,8 @@ def listed_tree(
 def data_for_trees(command: Command, files: Mapping[Path, ListedTree]) -> Dataset:
     """Return the data that trees in ``files`` are about.
 
-    If the command names data, it is these. Otherwise, the files of :func:`own_networks` are added to the
-    command as its data; without such files, the data are the bundled kitchen.
+    If the command names data, they are returned. Otherwise, the files of :func:`own_networks` are added to
+    the command as its data. Without such files, the data are the bundled kitchen.
     """
     if not command.names_data:
         command.add_sources(own_networks(command.dataset.data.network, files))
@@ -119,11 +128,12 @@ def data_for_trees(command: Command, files: Mapping[Path, ListedTree]) -> Datase
 def own_networks(kitchen: Network, files: Mapping[Path, ListedTree]) -> Sequence[Path]:
     """Return the files with trees that also serve as the network, for a command that names no data.
 
-    Files are returned only if the bundled ``kitchen`` has fewer than half of the units; otherwise, the
-    bundled kitchen is the network. A smaller share can be chance. With a larger share, the missing units were
-    perhaps made up by the program that wrote the tree. A warning names the network, unless the bundled
-    kitchen has all units. Raises :class:`UserError` if all files are answers about other data, since an
-    answer holds only a part of its data.
+    If the bundled ``kitchen`` has at least half of the units in all files, it is the network, and no file is
+    returned. Other units were perhaps made up by the program that wrote the trees. Otherwise, the files that
+    hold no answer are returned.
+
+    A warning names the network, unless the bundled kitchen has all units. If all files are answers about
+    other data, :class:`UserError` is raised, since an answer holds only a part of its data.
     """
     listed = [listed_unit for tree in files.values() for listed_unit in tree.units or ()]
     bundled_count = count_units_in(kitchen, [unit for unit, _ in listed])

@@ -38,8 +38,8 @@ def usual_objectives(
 ) -> Objectives:
     """Return the names if there are any, or else the ``usual`` objectives of a question.
 
-    If success rates are not known for all motions, the usual objectives are ``instead``, and a warning says
-    so.
+    If there are no names, and success rates are not known for all motions, return ``instead`` and report a
+    warning.
     """
     if names:
         return names
@@ -60,12 +60,11 @@ def as_constraints(constraints: Files) -> tuple[Constraint, ...]:
 
 
 def problem_for_rules(problem: Problem, settings: Settings, objectives: Sequence[Objective] = ()) -> Problem:
-    """Return the problem over the whole network if rules or stand-ins need this, else unchanged.
+    """Return the problem over the whole network if rules or stand-ins need it, else the problem unchanged.
 
-    The rules of ``settings`` need it if they may be about units beyond those that the goals can need.
-    ``objectives`` are given if only the best tree by them is wanted. If the problem has only the nearest
-    stand-ins, these are enough for trees that are best by dissimilarity first; anything else needs the whole
-    network.
+    Rules in ``settings`` need the whole network if they may be about units that the goals cannot need. A
+    problem with only the nearest stand-ins needs it, unless ``objectives`` begin with dissimilarity.
+    ``objectives`` are given only if nothing but the best tree by them is wanted.
     """
     if not problem.has_stand_ins_for(objectives):
         return over_whole_network(problem)
@@ -102,8 +101,8 @@ def limited_reading() -> AbstractContextManager[object]:
 def constraint_weights(weight_of_file: Mapping[File, int]) -> dict[Constraint, int]:
     """Return the weights by constraint, from weights by file or name of a constraint.
 
-    Raises :class:`UserError` for a weight that is no whole number from 1 to the greatest that is allowed, and
-    for a constraint with two weights.
+    Raises :class:`UserError` for a constraint with two weights. It is also raised for a weight that is not a
+    whole number, is less than 1, or is above the greatest that is allowed.
     """
     from foon_asp.asp.search_tuning import SEARCH  # noqa: PLC0415 (where there are rules)
 
@@ -124,9 +123,9 @@ def constraint_weights(weight_of_file: Mapping[File, int]) -> dict[Constraint, i
 def with_items(problem: Problem, items: str) -> Problem:
     """Return the problem with items that are used up or last; ``items`` is ``used-up`` or ``lasting``.
 
-    For ``used-up``, a problem whose items are used up already is returned unchanged. For another problem, the
-    stock and what stays are those of its data. Raises :class:`UserError` for another word, and for used-up
-    items at a level without contents.
+    For ``used-up``, a problem in which items are used up already is returned unchanged. Otherwise, the data
+    of the problem say what is in stock and what stays. Raises :class:`UserError` for another word, and for
+    used-up items at a level without contents.
     """
     if items not in ITEMS:
         raise UserError(f"found the items {items!r}, expected one of {', '.join(ITEMS)}")

@@ -56,7 +56,7 @@ class _Listener(Reporter):
         self._report(self._progress._replace(bounds={**self._progress.bounds, objective: bound}))
 
     def step(self, word: str, done: int, total: int) -> None:
-        """Report the progress with the numbers of answers that are done and in total; ``word`` is dropped."""
+        """Report the progress with the number of answers that are done, and their total; drop ``word``."""
         self._report(self._progress._replace(done=done, total=total))
 
     def _report(self, progress: Progress) -> None:
@@ -66,12 +66,12 @@ class _Listener(Reporter):
 
 
 def wrap_for_python(ask: Callable[P, T], signature: inspect.Signature) -> Callable[P, T]:
-    """Return a function that also takes a path or data for a problem, ``cancel`` and ``on_progress``.
+    """Return the function of a question for Python, with the options ``cancel`` and ``on_progress``.
 
-    ``ask`` is the function of a question. In a call from Python, arguments are checked against the
-    ``signature``; a command has read them already. The token ``cancel`` ends the call with what was found by
-    then; if this takes too long, the call raises :class:`StoppedError`. The function ``on_progress`` gets
-    each :class:`Progress`.
+    ``ask`` is the function to wrap. A path or data may be given in place of its problem. In a call from
+    Python, arguments are checked against the ``signature``; a command has read them already. The token
+    ``cancel`` ends the call with what was found by then. If this takes too long, the call raises
+    :class:`StoppedError`. The function ``on_progress`` gets each :class:`Progress`.
     """
     name, check = ask.__name__, checker(ask, signature)
 
@@ -112,9 +112,10 @@ def arguments_with_problem(
     """Return the positional arguments of a question, with a problem in place of a path or of data.
 
     ``name`` and ``parameters`` are those of the question. ``positional`` and ``named`` are the arguments of
-    the call. The arguments are returned as they are if the question is about no problem. A question about
-    data as well as problems (``about``) gets data if no goal is named. ``named`` is changed in place: the
-    goal and the container rule of the problem are removed, and ``objective`` becomes ``objectives``.
+    the call. If the question is about no problem, ``positional`` is returned unchanged. If it can be about
+    data as well (its parameter is ``about``), it gets data if no goal is named. ``named`` is changed in
+    place: the goal and the container rule of the problem are removed, and ``objective`` becomes
+    ``objectives``.
 
     Raises :class:`UserError` for a call without a subject, for a path that does not exist, and for a goal
     beside a problem, which has its own.

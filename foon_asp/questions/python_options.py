@@ -31,7 +31,8 @@ class Limits(TypedDict, total=False):
 class Posed(Limits, total=False):
     """Keyword options of :class:`Limits`, and the goals and container rule of the problem.
 
-    A question needs these if its first argument is a path or data, and not a problem.
+    The goals and the container rule are for a question whose first argument is a path or data, and not a
+    problem.
     """
 
     goal: str | ObjectNode | Iterable[str | ObjectNode]
@@ -63,9 +64,9 @@ def settings_of(options: CommonOptions) -> Settings:
 
 
 def start_deadline(options: Limits) -> Deadline:
-    """Return a deadline whose time starts now; it ends no later than that of the calling command.
+    """Return a deadline whose time starts now; it ends no later than the deadline of the calling command.
 
-    Without limits in ``options``, it is the deadline of the command itself, if there is one.
+    Without limits in ``options``, return the deadline of the command itself, if there is one.
     """
     outer, (time, memory) = caller().deadline, limits_of(options)
     if time is None and memory is None and outer is not None:

@@ -63,9 +63,10 @@ def _read_pair(
 ) -> tuple[Named, Named]:
     """Read two files as trees of ``goals``, or as networks.
 
-    They are trees if there are ``goals``, or if one of the files says that it is a tree. ``read_data`` then
-    reads the data that the trees are about. Without ``goals``, the trees are for the goals that the files
-    name. ``containers``: ``None`` for the container rule that a file names, or else the default rule.
+    The files are trees if there are ``goals``, or if one of the files says that it is a tree. ``read_data``
+    then reads the data that the trees are about. Without ``goals``, the trees are for the goals that the
+    files name. If ``containers`` is ``None``, a tree has the container rule that its file names, or else the
+    default rule.
     """
     content_of: dict[Path, ListedTree | Tree | Foon] = {
         file: _read_units_or_data(file) for file in dict.fromkeys(files)
@@ -85,8 +86,8 @@ def _read_pair(
 def _data_for_trees(level: int, files: Mapping[Path, ListedTree]) -> Dataset:
     """Return the data that trees in files are about, for a call from Python, which names no data.
 
-    They are read from the files that :func:`own_networks` finds. Without such files, they are the bundled
-    kitchen.
+    The data are read from the files that :func:`own_networks` returns. Without such files, they are the
+    bundled kitchen.
     """
     kitchen = load(level=level)
     network_files = own_networks(kitchen.network, files)

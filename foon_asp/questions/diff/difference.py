@@ -44,7 +44,7 @@ class Difference(Result, frozen=True, kw_only=True):
         raise NotImplementedError
 
     def unit_lines(self) -> Iterator[str]:
-        """Yield the number of common units, then lines on pairs that nearly agree and units of only one."""
+        """Yield the number of common units, then lines on pairs that nearly agree, and on all other units."""
         yield f"in both: {counted(len(self.in_both), 'unit', ',')}"
         if self.nearly_the_same:
             yield from ("", f"nearly the same: {counted(len(self.nearly_the_same), 'unit', ',')} in each")

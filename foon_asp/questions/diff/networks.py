@@ -148,7 +148,7 @@ def compare_networks(
 def _amount_differences(
     networks: Sequence[Network], amounts: tuple[Amounts, Amounts]
 ) -> Iterator[AmountDifference]:
-    """Yield the amounts in which units of both networks differ, in the order of the first network.
+    """Yield differences of amounts in units that both networks have, in the order of the first network.
 
     An amount that is not stated is 1.
     """

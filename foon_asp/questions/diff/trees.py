@@ -169,10 +169,10 @@ _Origin = FunctionalUnit | bool
 
 
 def _origins(tree: Tree, goals: Sequence[ObjectNode]) -> dict[ObjectNode, _Origin]:
-    """Return the origin of each node that a tree needs for ``goals``, breadth first from these backwards.
+    """Return the origin of each node that a tree needs for ``goals``, in the order of a backward search.
 
-    A unit that needs a node itself does not make it. The kitchen is the origin of its nodes, also if a unit
-    makes them.
+    The search is breadth first. A unit that needs a node itself does not make it. Nodes of the kitchen have
+    the kitchen as origin, also if a unit makes them.
     """
     problem = tree.problem
     container_rule = problem.containers, problem.utensils, problem.network
