@@ -21,7 +21,7 @@ class UserRuleCheck:
     """A check of which user rules an executable tree breaks, or a plan if items are used up.
 
     The constraints are read once, for any number of trees. ``local`` says that units outside a tree do not
-    decide whether it breaks a constraint.
+    matter for any constraint.
     """
 
     def __init__(self, settings: Settings, used_up: bool = False) -> None:

@@ -154,8 +154,8 @@ def _changes(network: Network, unit: FunctionalUnit) -> Iterator[Change]:
     """Yield the objects of a unit with their nodes before and after it.
 
     An input is paired with the same node among the outputs, or else with an output of its label. An input
-    without such an output has no node after the unit. Outputs without a partner come last, and have no node
-    before it.
+    without such an output has no node after the unit. Outputs without an input come last, and have no node
+    before the unit.
     """
     pairs: list[tuple[ObjectNode | None, ObjectNode | None]] = []
     remaining = list(unit.outputs)

@@ -57,8 +57,8 @@ def translate(domain: PddlOutline, problem: PddlOutline, deadline: Deadline) -> 
 def _run(folder: Path, deadline: Deadline) -> tuple[int, str]:
     """Run the translator in a folder until it ends; return its exit code and its output.
 
-    Its memory counts for the deadline. If a limit is reached, the process is killed and :class:`LimitError`
-    is raised. Messages for the error output are part of the output.
+    Error output is included. The memory of the translator counts for the deadline. If a limit is reached, the
+    process is killed and :class:`LimitError` is raised.
     """
     # Unbuffered, it notices at its next line that nobody reads it any more, should this process be killed.
     command = [sys.executable, "-P", "-u", "-m", _MODULE, *_TRANSLATOR_OPTIONS, "domain.pddl", "problem.pddl"]

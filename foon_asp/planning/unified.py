@@ -29,8 +29,8 @@ def unified_problem(
     """Return a problem of unified-planning: the task of :func:`planning_task`, with the names of its PDDL.
 
     The parameters are those of :func:`planning_task`. The problem minimizes the sum of the costs of actions.
-    Raises the errors of :func:`foon_asp.planning.planning_task.planning_task`, and :class:`UserError` if
-    unified-planning is not installed.
+    Raises the errors of :func:`planning_task`. Also raises :class:`UserError` if unified-planning is not
+    installed.
     """
     up = require_unified_planning()
     task = planning_task(problem, objectives, whole, merged)
