@@ -25,12 +25,12 @@ class Cause(StrEnum):
 class RootCause(NamedTuple):
     """An object node that causes dead ends: goals that cannot be made.
 
-    ``object``: the id of the node. For the cause ``cycle``, it is one of the nodes of the cycle: if possible,
-    one on the cheapest path to the goals.
-    ``stops``: the ids of the units that need the node, or a node of its cycle, on some path to an unreachable
-    goal.
-    ``on_the_way``: whether the cheapest path to the goals needs the node, or a node of its cycle. The cheapest
-    path needs the fewest missing nodes, by the heuristic h_add.
+    ``object``: the id of the node. For the cause ``cycle``, it is one of the nodes of the cycle: if
+    possible, one on the cheapest path to the goals.
+    ``stops``: the ids of the units that need the node, or a node of its cycle, on some path to an
+    unreachable goal.
+    ``on_the_way``: whether the cheapest path to the goals needs the node, or a node of its cycle. The
+    cheapest path needs the fewest missing nodes, by the heuristic h_add.
     ``cycle``: the set of nodes that can only be made from each other; ``None`` for the cause ``missing``.
     """
 

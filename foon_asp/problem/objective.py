@@ -241,7 +241,7 @@ for _objective in _BUILT_IN.values():
 def multiplies(objective: Objective) -> bool:
     """Whether an objective is a product, of which more is better.
 
-    Others are sums, of which less is better.
+    Any other objective is a sum, of which less is better.
     """
     return objective.row.multiplies
 
