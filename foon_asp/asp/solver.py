@@ -272,9 +272,9 @@ class _Solver:
     def _solve_by_priced_limit(self, subproblem: Subproblem, tree_without_rules: Units) -> Outcome | None:
         """Find the best tree under a limit on a sum by putting a Lagrangian price on the sum.
 
-        Each sum of the rules whose limit ``tree_without_rules`` exceeds is tried in turn. Returns an outcome
-        without a tree if no tree is within a limit, or if the time is up. Returns ``None`` if no price yields
-        a tree that keeps to all rules.
+        Some rules limit a sum. Each sum whose limit ``tree_without_rules`` exceeds is tried in turn. Returns
+        an outcome without a tree if no tree is within a limit, or if the time is up. Returns ``None`` if no
+        price yields a tree that keeps to all rules.
         """
         from foon_asp.hypergraph.priced_limit import search_within_limit  # noqa: PLC0415 (of use with few rules)
 

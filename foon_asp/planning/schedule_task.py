@@ -47,7 +47,7 @@ class ScheduleTask(NamedTuple):
 
     @property
     def at_step(self) -> list[list[int]]:
-        """The uses that each step is part of, as positions in ``uses``, by step."""
+        """For each step, the positions in ``uses`` of the uses that have the step."""
         uses_of: list[list[int]] = [[] for _ in self.lengths]
         for use, (_, steps) in enumerate(self.uses):
             for step in steps:

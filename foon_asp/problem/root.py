@@ -29,7 +29,7 @@ class Root:
         """
         if degree < 1 or of <= 0:
             raise ValueError("expected a positive degree, and a positive number under the root")
-        # a rational root for two degrees is one for their greatest common divisor: so the least degree is found
+        # if two powers of the root are rational, so is that by the greatest common divisor of the exponents
         for divisor in range(2, degree + 1):
             while degree % divisor == 0:
                 numerator, denominator = (
