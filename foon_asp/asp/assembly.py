@@ -358,9 +358,9 @@ def need_whole_network(problem: Problem, settings: Settings) -> bool:
     """Whether user rules may be about units beyond those that the goals can need.
 
     If so, a part of a store is not enough for the question. Return ``False`` without user rules and replaced
-    encodings. Also return ``False`` if the network is a part of a store, every rule is local, and no rule
-    requires units that no goal needs. Otherwise return ``True``, also with replaced encodings and if items
-    are used up.
+    encodings. Also return ``False`` for rules over a part of a store if each rule is local, and none requires
+    units that no goal needs. Otherwise return ``True``, also with replaced encodings and if items are used
+    up.
     """
     if not settings.constraints and settings.replaced is None:
         return False

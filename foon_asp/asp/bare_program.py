@@ -90,7 +90,10 @@ def bare_program(
 def printable_program(
     problem: Problem, objectives: Sequence[Objective], settings: Settings, soft: Mapping[Constraint, int]
 ) -> BareProgram:
-    """Return the program of :func:`bare_program`; under user rules or encodings, over the whole network."""
+    """Return the program of :func:`bare_program`.
+
+    With user rules or replaced encodings, the program is over the whole network.
+    """
     has_rules = settings.constraints or settings.encodings or soft
     return bare_program(problem.whole if has_rules else problem, objectives, settings, soft)
 

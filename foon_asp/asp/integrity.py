@@ -28,8 +28,8 @@ _PASSED_OVER = {ASTType.Program, ASTType.Comment}
 class IntegrityConstraint(NamedTuple):
     """A rule without a head: its number, the constraint that it belongs to, its source and text.
 
-    ``number`` counts from 1. ``constants`` are those settings of constants by the user, ``NAME=VALUE``, whose
-    name occurs in the rule.
+    ``number`` counts from 1. ``constants`` are the user's settings, ``NAME=VALUE``, of the constants that
+    occur in the rule.
     """
 
     number: int

@@ -19,8 +19,8 @@ from foon_asp.rules.passed_constraint import Constraint
 class Relaxed(NamedTuple):
     """Constraints that are rewritten, so that a tree may break them or the search may drop them.
 
-    ``constraints``: the original constraints, which are checked like others, but not loaded.
-    ``rules``: their rewritten text.
+    ``constraints``: the original constraints. They are checked, but not loaded.
+    ``rules``: the text of the rewritten rules.
     ``encoding``: the built-in file of ``encodings/questions`` that is loaded with the rules.
     ``places``: the source of each rewritten rule, by its text.
     ``files``: the files that the places are in.

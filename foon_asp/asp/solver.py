@@ -155,8 +155,8 @@ class _Solver:
     def solve(self) -> Outcome:
         """Return the outcome of the search; at a limit or ctrl-C, the outcome with the incumbent.
 
-        If there is no incumbent at a limit, it is the tree of the prepared question, unless rules or bounds
-        may exclude this tree. The ground program is closed at the end.
+        If there is no incumbent at a limit, the outcome has the tree of the prepared question, unless rules
+        or bounds may exclude this tree. The ground program is closed at the end.
         """
         deadline = self.deadline
         try:

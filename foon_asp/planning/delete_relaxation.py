@@ -151,10 +151,10 @@ class _Relaxation:
     def _default_derivations(self, defaults: set[int]) -> Iterator[StripsAction]:
         """Yield actions that derive the default values of derived variables (Clark's completion).
 
-        A variable has its default value if every axiom that sets the variable fails. An axiom fails if a fact
-        of its body does not hold, that is, if the variable of this fact has another value. If several values
-        make an axiom fail, a new fact of the task says that the axiom fails. Default values that these
-        derivations need are derived as well. Raises :class:`UserError` if such a derivation is cyclic.
+        A variable has its default value if every axiom that sets the variable fails. An axiom fails if the
+        variable of a fact in its body has another value. If several values make an axiom fail, a new fact of
+        the task says that the axiom fails. Default values that these derivations need are derived as well.
+        Raises :class:`UserError` if such a derivation is cyclic.
         """
         graph: dict[int, set[int]] = {}
         pending = sorted(defaults)

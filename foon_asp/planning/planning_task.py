@@ -85,7 +85,7 @@ class PlanningTask:
 
     @property
     def wanted(self) -> dict[int, int]:
-        """The number of copies of each goal that are wanted, by id."""
+        """The number of copies wanted of each goal, by node id."""
         return {goal: self.problem.wanted(goal) for goal in self.goals}
 
 

@@ -46,8 +46,8 @@ def container_rule(name: str) -> ContainerRule:
 def conditions(rule: ContainerRule, level: int, starting: bool = False) -> str:
     """Return the conditions under which a claim holds, in words: ``strict containers, level 2``.
 
-    The default level 3 is not mentioned. ``starting`` says that the user named no kitchen, so that the
-    starting kitchen is assumed; then ``, starting kitchen`` is added.
+    The default level 3 is not mentioned. If the user named no kitchen, ``starting`` is true, and ``, starting
+    kitchen`` is added.
     """
     text = f"{rule} containers" + (f", level {level}" if level < 3 else "")
     return text + (", starting kitchen" if starting else "")

@@ -37,8 +37,8 @@ class Shop:
     In a FOON, states say that something was done to a node. So these nodes are for sale:
 
     - a node that no unit makes out of other nodes;
-    - a vessel or tool. Either its states are only empty or clean, or it is a node of the starting kitchen
-      that has no contents, and its label is no ingredient of any node;
+    - a vessel or tool: a node whose states are only empty or clean, or a node of the starting kitchen without
+      contents. The label of the latter must be no ingredient of any node;
     - an unprocessed node: it has no state, is not on or at anything, and contains at most one ingredient. The
       name of this ingredient (without one, the label of the node) must not be a *product*. A product is a
       name that some unit makes out of nodes without this name, such as whipped cream, dough or lemon juice.

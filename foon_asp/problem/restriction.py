@@ -31,7 +31,7 @@ class Restriction:
 
 
 class Contradiction(NamedTuple):
-    """The result that no tree satisfies the rules, which is known before any search."""
+    """The result that no tree satisfies the rules, known before any search."""
 
 
 class FilteredSets(Sequence[tuple[int, ...]]):
