@@ -321,10 +321,10 @@ def reach_of_rules(settings: Settings) -> ReachOfRules:
 def hold_for_subtrees(settings: Settings) -> bool:
     """Whether the user rules are antimonotone: if a tree keeps to them, each of its subtrees does, too.
 
-    The answer holds for every part of the network. It also holds if more object nodes are available than the
-    kitchen has. It is true without rules. It is false with replaced encodings, for rules that are not local,
-    and for rules beside rewritten rules. Rewritten rules themselves are ignored. Raises as :func:`assemble`
-    does.
+    ``True`` means that they are so in every part of the network, and also if more object nodes are available
+    than the kitchen has. The result is true without rules. It is false with replaced encodings, for rules
+    that are not local, and for rules beside rewritten rules. Rewritten rules themselves are ignored. Raises
+    as :func:`assemble` does.
     """
     if settings.replaced is not None:
         return False

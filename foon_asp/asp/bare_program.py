@@ -50,7 +50,7 @@ def bare_program(
     ``soft`` has the weight of each constraint that may be broken. If there is one, the first objective is the
     least sum of the weights of broken rules. Under ``success``, clingo compares rounded weights, so its
     optimum may differ in the last digits. The limits of ``settings`` are ignored. If there is no tree, the
-    program has all units that could matter. So clingo can prove that there is none.
+    program has all units that could matter. So clingo can prove that no tree exists.
 
     Raises :class:`UserError` like :func:`foon_asp.asp.solve`. If items are used up, also raises it for soft
     constraints and for amounts.

@@ -58,15 +58,14 @@ def relax(
 
     Returns the numbered integrity constraints, and the rewritten rules. Without ``soft``, integrity
     constraint number C need not hold if the atom ``_dropped(C)`` is true (``questions/clash.lp``). With
-    ``soft``, it becomes a rule for ``_broken(C,Way)``, where ``Way`` has the values of its variables
-    (``questions/soft.lp``). Rules of ``constraints`` with a head stay as they are. ``constants`` are the
-    user's settings of constants. ``deadline`` has the limits of the checks.
+    ``soft``, the integrity constraint becomes a rule for ``_broken(C,Way)``, where ``Way`` has the values of
+    its variables (``questions/soft.lp``). Rules of ``constraints`` with a head stay as they are.
+    ``constants`` are the user's settings of constants. ``deadline`` has the limits of the checks.
 
-    ``before`` are constraints of the question that are not rewritten. They are numbered before
-    ``constraints`` where messages number texts without a file. Each of the ``constraints`` is first parsed
-    and grounded alone, without facts, so that its errors are raised with their places. At a limit or ctrl-C,
-    the grounding is skipped and the deadline records it. Raises as
-    :func:`foon_asp.encoding.encoding.read_encoding` does.
+    ``before`` are constraints of the question that are not rewritten. Messages number rules given as text;
+    the rules of ``before`` come first. Each of the ``constraints`` is parsed and grounded alone, without
+    facts, so that its errors are raised with their places. At a limit or ctrl-C, the grounding is skipped and
+    the deadline records it. Raises as :func:`foon_asp.encoding.encoding.read_encoding` does.
     """
     numbered: list[IntegrityConstraint] = []
     rules: dict[str, Source] = {}

@@ -262,9 +262,9 @@ def prepare(
 def _apply_rules(prepared: Prepared, rules: "Rules | ReadyMade") -> Prepared:
     """Apply the user rules that remove units or require sets of units, and return the question.
 
-    If clingo has to enforce other rules, the question is ``unsettled``. If no tree can satisfy the rules, it
-    is ``contradicted``. If the rules that clingo has to enforce are not local, or clingo refuses a rule, it
-    is returned unchanged. In a large network, all rules may be left to the search.
+    If clingo has to enforce other rules, the question is ``unsettled``. If no tree can satisfy the rules, the
+    question is ``contradicted``. The question is returned unchanged if clingo refuses a rule, or if rules
+    that clingo has to enforce are not local. In a large network, all rules may be left to the search.
     """
     if rules.unsettled and not rules.local:
         return prepared

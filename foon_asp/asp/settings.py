@@ -79,7 +79,7 @@ class Settings(NamedTuple):
 
     @property
     def replaced(self) -> Path | None:
-        """The folder of encodings that replace the built-in ones; ``None`` if there is none.
+        """The folder of encodings that replace the built-in ones; ``None`` without one.
 
         If files of the built-in folder itself were changed, this is the built-in folder.
         """

@@ -48,7 +48,7 @@ def solve(
     """Return the best task tree under lexicographic objectives, with what is proved about it.
 
     ``units`` decides last, so that the tree is irredundant. At a limit or ctrl-C, the outcome has the
-    incumbent. If clingo's statistics are requested and clingo does not run, this is reported.
+    incumbent. If clingo's statistics are requested, but clingo does not run, the reporter is told so.
 
     ``mattered``: units, by id in the whole network, that the search for a similar question explored. They are
     explored first, and the units that this search explores are added.

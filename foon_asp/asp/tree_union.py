@@ -47,7 +47,7 @@ def tree_union(
     """Find the units of some and of every tree up to a cost, as brave and cautious consequences.
 
     If ``worse`` is 0, the trees are the optimal ones. Otherwise they are all irredundant trees whose first
-    objective is worse than the best value by at most this share of it: by 10% for ``Fraction(1, 10)``. Each
+    objective is at most the share ``worse`` worse than the best value: for ``Fraction(1, 10)``, 10%. Each
     search finds a tree with a unit that no earlier tree has, or without a unit that all earlier trees have.
     The last search proves that there is no such tree. Without a proved optimum, nothing is searched. The
     units of the tree that was found are then in ``in_some``, and undecided.
@@ -162,7 +162,7 @@ class _UnionSearch:
 
         ``question`` are facts that ask for such a tree. A tree found may be above the cost limit by exact
         costs, or change nothing. Then it is excluded from all later searches, and the search goes on. Returns
-        ``True`` if a tree changed the result, ``False`` if there is none, ``None`` at a limit.
+        ``True`` if a tree changed the result, ``False`` if no tree does, ``None`` at a limit.
         """
         problem, levels = self._prepared.problem, self._prepared.levels
         while True:

@@ -27,7 +27,7 @@ class StripsTask:
     """A STRIPS task without delete effects, the delete relaxation of a planning task.
 
     ``name``: the name of the task.
-    ``facts``: the names of the facts; facts are given by position in it.
+    ``facts``: the names of the facts. Everywhere else, a fact is its position in this list.
     ``start``, ``goals``: the facts of the initial state and of the goal.
     ``has_deletes``: whether actions of the original planning task delete relevant facts.
     """

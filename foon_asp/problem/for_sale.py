@@ -17,7 +17,7 @@ class Offer(StrEnum):
     first of the following sets from which the goals can be made:
 
     ``for sale``: the nodes that :class:`Shop` sells, except the dish.
-    ``cycle``: these nodes, and nodes that can only be made from each other, except the dish.
+    ``cycle``: the nodes of ``for sale``, and nodes that can only be made from each other, except the dish.
     ``processed``: every node except the dish.
     ``dish``: every node except the goals.
     ``goal``: every node.

@@ -12,8 +12,8 @@ class Restriction:
 
     ``removed`` is a function that takes the id of a unit and returns ``True`` if no tree may contain the
     unit. It is called at most once for each unit, since its results are cached. ``required`` are sets of
-    units. A tree has to contain and execute a unit of each set, which need not lead to a goal. So a required
-    set is like an additional goal whose achievers are the units of the set.
+    units. From each set, a tree has to contain and execute a unit, even if this unit leads to no goal. So a
+    required set is like an additional goal whose achievers are the units of the set.
     """
 
     removed: Callable[[int], bool]
