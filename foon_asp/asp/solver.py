@@ -746,11 +746,12 @@ class _Solver:
         """Return bounds on the objectives from clingo's lower bounds, which begin with the highest priority.
 
         Without a bound of clingo, costs are at least 0 and success is at most 1. Objectives after a rounded
-        one have no bound, since it is not known which trees they count among.
+        one have no bound.
 
         After reductions, the bound by cuts on the first objective is used if it is better. A bound on a cost
-        is at most the cost of the incumbent, since clingo may search for better trees only. Only the first
-        objective has a bound if it multiplies, or if its bound differs from the cost of the incumbent.
+        is at most the cost of the incumbent, since clingo may search for better trees only. If the first
+        objective multiplies, or its bound differs from the cost of the incumbent, later objectives have no
+        bound.
         """
         bounds: dict[Objective, int | Fraction] = {}
         for objective, value in zip(self.levels, lower or [0], strict=False):

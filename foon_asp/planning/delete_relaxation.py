@@ -98,8 +98,8 @@ class _Relaxation:
     def _deletes(self, needed: set[int]) -> bool:
         """Whether an operator may delete a fact of ``needed``, or a condition of an effect that adds one.
 
-        An effect sets a variable to a value. It may delete each other value that the variable can have
-        before.
+        An effect sets a variable to a value. It deletes the value that the variable had before, if that is
+        another value.
         """
         needed = self._with_effect_conditions(needed)
         for operator in self._task.operators:

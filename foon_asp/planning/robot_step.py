@@ -129,9 +129,9 @@ def robot_steps(
 
 
 def _is_tool(problem: Problem, unit: FunctionalUnit, node: ObjectNode) -> bool:
-    """Whether an input that is no place is a tool, that is, a utensil.
+    """Whether an input is a tool; the input must be no place of the unit.
 
-    If the problem has no utensils, a tool is an input that is also an output.
+    A tool is a utensil. If the problem has no utensils, a tool is an input that is also an output.
     """
     return node.label in problem.utensils if problem.utensils else node in unit.outputs
 

@@ -109,8 +109,8 @@ def _uses(problem: Problem, replay: Replay, resources: ScheduleResources) -> tup
         """Add a step to the use that ``copy`` belongs to, or to a new use; return the position of the use.
 
         The use is new if ``copy`` belongs to no use, or to one that has the step already. ``label`` is the
-        label of the tool. ``node`` is the tool's node before the step, if that is known. A new use is named
-        by ``label``. If ``node`` is in the kitchen, it has the name under which ``node`` is counted instead.
+        label of the tool. ``node`` is the tool's node before the step, if that is known. The name of a new
+        use is ``label`` or, for a ``node`` in the kitchen, the name under which ``node`` is counted.
         """
         use = None if copy is None else use_of.get((copy, label))
         if use is None or number in steps[use]:

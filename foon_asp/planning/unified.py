@@ -84,7 +84,7 @@ def register_engine() -> str:
         The name of the engine there: ``foon-asp``.
 
     Raises:
-        UserError: if unified-planning is not installed, or Fast Downward's translator.
+        UserError: if unified-planning or Fast Downward's translator is not installed.
 
     Example:
         >>> try:

@@ -160,7 +160,7 @@ def units_relevant_to_plans(problem: Problem, reached: Reached) -> set[int]:
 def kitchen_needed(problem: Problem) -> list[int]:
     """Return the ascending ids of kitchen items that a tree for the goals can need, or that are goals.
 
-    Items that only units without all preconditions need are included.
+    Units that cannot be executed are not left out of this search.
     """
     units, _ = search_backward(problem.goals, problem.makers, problem.needs, problem.kitchen)
     needed = {o for unit in units for o in problem.needs[unit]}.union(problem.goals)
