@@ -140,8 +140,7 @@ class Objective(str, metaclass=_IterableOverBuiltIns):
     @staticmethod
     @cache
     def of_measure(name: str) -> "Objective":
-        """Return the objective of a user measure: the least sum of the costs that the measure assigns to
-        units.
+        """Return the objective of a user measure: least sum of the costs that the measure assigns to units.
 
         Each call with the same name returns the same object.
 
