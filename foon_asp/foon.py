@@ -76,7 +76,7 @@ def load(
         unit_amounts: The file with the numbers of copies that units take and make, instead of that of
             the folder.
         measures: Objectives of your own: files with rules for what units cost, or the rules themselves.
-        stand_ins: Whether available nodes may be used in place of those that cannot be made. ``True`` means
+        stand_ins: Whether available nodes may be used in place of nodes that cannot be made. ``True`` means
             by the usual table of prices, with the changes of ``stand_ins.txt`` in the folder. A table means
             by this one.
         level: How object nodes are compared: by label (1), by label, states and relations (2), or by

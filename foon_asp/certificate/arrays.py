@@ -21,13 +21,13 @@ class Arrays:
     With the objective ``kitchen``, no node is initial. Each kitchen item ``k`` then has an additional
     achiever without preconditions and of cost 1: the action ``items[k]``. Otherwise, ``items`` is empty.
 
-    A cost is a vector. Its *coordinates* are one for each objective, and for ``success`` one for each rate
-    below 1. Without objectives, all costs are 0.
+    A cost is a vector. It has a *coordinate* for each objective, except that ``success`` has one for each
+    rate below 1. Without objectives, all costs are 0.
 
     Covered constraints may add nodes and steps (:class:`~foon_asp.proof.compiled_rules.CompiledRules`,
-    ``ruled``). They come last; a step is an action of cost 0. ``forbidden`` are the units that constraints
-    remove, and ``limits`` are the limits of constraints. Limits by user rules (*own* limits) may be found
-    later and added.
+    ``ruled``). Added nodes and steps have the last numbers. A step is an action of cost 0. ``forbidden`` are
+    the units that constraints remove, and ``limits`` are the limits of constraints. Limits by user rules
+    (*own* limits) may be found later and added.
     """
 
     def __init__(self, problem: Problem, objectives: Sequence[Objective], covered: Coverage) -> None:
@@ -138,10 +138,10 @@ class Arrays:
         return self.ruled.barred_units(self._units_among(used), without)
 
     def breaking_actions(self, derivation: frozenset[int]) -> list[int]:
-        """Return units of a derivation that together break the first barring constraint that it breaks.
+        """Return units that together break the first barring constraint that a derivation breaks.
 
-        Without such a constraint, return an empty list. Units that the constraint bars come first. The set of
-        units is irreducible: the constraint bars no unit of a smaller set.
+        If it breaks no such constraint, return an empty list. Units that the constraint bars come first. The
+        set of units is irreducible: the constraint bars no unit of a smaller set.
         """
         chosen = self._units_among(derivation)
         for barred in self.ruled.barred.values():
@@ -173,7 +173,7 @@ class Arrays:
         """Return the case split of an answer of a search, with actions as numbered here.
 
         In an answer, the action that takes an item has the number of units plus the item's id. A split by an
-        action that does not exist here is replaced by ``None``, no split.
+        action that does not exist here is replaced by ``None``, which means no split.
         """
         if cases is None:
             return None

@@ -53,7 +53,8 @@ class Certificate(NamedTuple):
     def text(self) -> str:
         """Return the certificate as JSON text.
 
-        Each key is on a line of its own, and so is each cut and each weight of a proof without branches.
+        Each key has a line of its own. Each cut, and each weight of a proof without branches, has one as
+        well.
         """
         lines = []
         for key, value in self.content.items():
@@ -154,8 +155,9 @@ def certify_infeasible(
     """Return a certificate that there is no tree.
 
     Return ``None`` if some tree satisfies all covered constraints, or if no proof is found before time is up.
-    Also return ``None`` if the proof is beyond the limits of ``verify``, or if constraints are covered and
-    units have rates of their own. ``covered``, ``expired`` and ``subject`` are as for :func:`certify`.
+    Also return ``None`` if the proof is beyond the limits of ``verify``. The result is ``None``, too, if
+    constraints are covered and units have rates of their own. ``covered``, ``expired`` and ``subject`` are as
+    for :func:`certify`.
     """
     if covered.rules and problem.own_rates:
         return None
@@ -195,8 +197,8 @@ def _write_tree_certificate(
 ) -> Certificate | None:
     """Return the verified certificate of a claim about trees; each cut and each limit gets a number in it.
 
-    Return ``None`` if the numbers in the proof are too long for certificates, or if the certificate is beyond
-    the limits of the verifier. Claims about user rules that the proof does not use are left out.
+    Return ``None`` if numbers in the proof are too long, or if the certificate is beyond the limits of the
+    verifier. Claims about user rules that the proof does not use are left out.
 
     ``subject`` is ``None`` if the problem is over the whole network. ``bound`` is ``None`` unless the claim
     is ``bound``.
@@ -224,7 +226,8 @@ def _write_tree_certificate(
     def packing_json(packing: Packing) -> dict[str, object]:
         """Return the JSON of a cost partition: weights of cuts, weights of limits, and the divisor.
 
-        Limits and divisor are omitted where the partition does not use them. Cuts and limits get numbers.
+        The divisor says to which multiples the bound is rounded up. Limits and divisor are omitted where the
+        partition does not use them. Cuts and limits get numbers.
         """
         weights = sorted((cut_number(cut), arrays.vector_json(weight)) for cut, weight in packing.weights)
         limits = sorted(

@@ -27,11 +27,12 @@ def certify_outcome(
 ) -> tuple[Outcome, Certificate | None]:
     """Return an answer marked as certified, and its certificate; ``None`` if no certificate is found.
 
-    The objectives that the certificate proves are marked as certified. If it proves the whole claim,
-    ``certificate`` becomes the kind of proof of the answer, and a plan that was found at a limit becomes
-    optimal. User rules are taken on trust only if that proves more than a bound on trees. If only a bound is
-    proved, or if user rules are taken on trust, the answer is not marked. In all cases, ``outcome.seconds``
-    gets the seconds of the search, under ``certificate``.
+    If the certificate proves only a bound, or takes user rules on trust, the answer is not marked. Otherwise,
+    the objectives that the certificate proves are marked as certified. If it proves the whole claim, the kind
+    of proof of the answer becomes ``certificate``. Then a plan that was found at a limit becomes optimal.
+
+    User rules are taken on trust only if that proves more than a bound on trees. In all cases,
+    ``outcome.seconds["certificate"]`` becomes the time of the search for certificates.
 
     ``subject`` is the whole network if the network of the answer is a part of it, as for
     :func:`~foon_asp.certificate.certify`. Raises :class:`BugError` if a tree that the solver called optimal
@@ -119,8 +120,8 @@ def _find_plan_certificate(
 def _contradiction(outcome: Outcome, certificate: Certificate, covered: Coverage) -> str | None:
     """Return in words why an answer and a certificate contradict each other; ``None`` if they do not.
 
-    The verifier has accepted the certificate, but does not know the answer. So goals and claim of the
-    certificate are compared with those of the answer here.
+    The verifier has accepted the certificate, but does not know the answer. So the goals and the claims of
+    the two are compared here.
     """
     problem, content = outcome.problem, certificate.content
     goals = tuple(goal["id"] for goal in content["goals"])
@@ -141,7 +142,8 @@ def _cost_contradiction(
 ) -> str | None:
     """Return in words why the costs of a tree contradict a certificate; ``None`` if they do not.
 
-    They do if they are below the proved bound, or differ from those of the tree that is proved optimal.
+    The costs contradict it if they are below the proved bound, or differ from the costs of the tree that is
+    proved optimal.
     """
     problem, content = outcome.problem, certificate.content
     arrays = Arrays(problem, certificate.certified, covered)
@@ -170,7 +172,7 @@ def _read_vector(arrays: Arrays, stated: Sequence[Any]) -> Vector:
 
 
 def _wrong_answer(outcome: Outcome, settings: Settings, why: str) -> BugError:
-    """Return an error about a wrong answer of the solver; its message has the question, not the data."""
+    """Return an error about a wrong answer of the solver; its message states the question, not the data."""
     problem = outcome.problem
     question_lines = [
         f"goals: {' | '.join(str(problem.network.objects[goal]) for goal in problem.goals)}",

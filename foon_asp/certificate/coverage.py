@@ -74,12 +74,13 @@ NOTHING = Coverage()  # no constraints at all
 def coverage(settings: Settings) -> Coverage:
     """Return the constraints of a question, divided into those that a certificate covers and the others.
 
-    Ready-made constraints are covered, with the values that were set. They are omitted if a value is missing,
-    since they then exclude nothing. Rules that only list such values, as facts, add them to the values.
+    Ready-made constraints are covered, with the values that were set. A ready-made constraint that lacks a
+    value is omitted, since it excludes nothing. Rules that only list facts can add values for ready-made
+    constraints.
 
-    Other rules only exclude trees, so a bound without them still holds. Constants that nothing covered reads
-    are named as not covered. A replaced encoding may do anything, and is named as not covered. Under a
-    replaced encoding, only ready-made rules that remove units are covered.
+    Other rules only exclude trees, so a bound without them still holds. Constants that no covered constraint
+    reads are named as not covered. A replaced encoding may do anything, so it is named as not covered, too.
+    Under a replaced encoding, only ready-made rules that remove units are covered.
     """
     constants = dict(setting.partition("=")[::2] for setting in settings.constants)
     uses: list[tuple[str, Mapping[str, str]]] = []
@@ -161,7 +162,7 @@ def _facts_of_rules(constraint: Constraint, among_others: bool = False) -> dict[
 
 
 def _name_with_digest(constraint: Constraint) -> str:
-    """Return the name and the digest of rules as one text; rules that were given as text are added to it."""
+    """Return the name and the digest of rules as one text; for rules given as text, also the rules."""
     if isinstance(constraint, RuleText):
         return (
             f"{constraint.name} {_sha256(constraint.text.encode('utf-8', 'surrogatepass'))} {constraint.text}"
@@ -180,9 +181,9 @@ def without_unused_claims(
 ) -> tuple[Rule, ...]:
     """Return the rules with only those claims about user rules that a proof uses.
 
-    A claim that no tree has all of some units is used if all these units are ``members`` of cuts. Claims with
-    a second set of units remain. ``limits`` are the limits that the proof uses; they replace those of the
-    user rules.
+    Some claims say that no tree has all units of a set. Such a claim remains if ``members``, the actions in
+    landmarks of the proof, contain the whole set. Claims with a second set of units always remain. ``limits``
+    are the limits that the proof uses. They replace the limits of the user rules.
     """
     members, used_limits = frozenset(members), [_limit_json(*limit) for limit in limits]
     return tuple(

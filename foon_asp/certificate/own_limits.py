@@ -74,10 +74,10 @@ class OwnLimits:
             ]
 
     def exceeded_limit(self, units: frozenset[int]) -> Limit | None:
-        """Search with clingo for a limit that ``units`` exceed: not all of some units that break a rule.
+        """Search with clingo for a set among ``units`` that breaks a rule; return it as a limit.
 
-        Return it after appending it to ``found_limits``. Return ``None`` if the units keep to the rules.
-        Raises ``KeyboardInterrupt`` if time is up.
+        The limit says that a tree lacks at least one unit of the set. It is appended to ``found_limits``.
+        Return ``None`` if the units keep to the rules. Raises ``KeyboardInterrupt`` if time is up.
         """
         if not self._has_user_rules:
             return None

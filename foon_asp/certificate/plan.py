@@ -47,7 +47,7 @@ _HALF = Fraction(1, 2)
 def covered_for_plans(covered: Coverage) -> Coverage:
     """Return the coverage for plans: rules that certificates of plans cannot check go to ``not_covered``.
 
-    Claims about user rules and limits by them are dropped.
+    Claims about user rules, and limits by user rules, are dropped.
     """
     rules = tuple(rule for rule in covered.rules if rule["rule"] in PLAN_RULES)
     others = {canonical_json(rule) for rule in covered.rules if rule not in rules and rule["rule"] != OWN}
@@ -65,8 +65,8 @@ def certify_plan(
 
     ``plan`` lists unit ids in the order of execution. ``expired`` returns whether time is up. Return ``None``
     if nothing is proved before that, or if the certificate is beyond the limits of the verifier. An objective
-    that needs rates is not proved if a rate is 0. If units have rates that differ from those of their
-    motions, return ``None`` if an objective needs rates or rules are covered.
+    that needs rates is not proved if a rate is 0. Some units may have rates that differ from the rates of
+    their motions. Then return ``None`` if an objective needs rates or rules are covered.
     """
     if problem.own_rates and (covered.rules or any(o.row.needs is OptionalData.RATES for o in objectives)):
         return None
@@ -97,8 +97,8 @@ def certify_no_plan(
 ) -> Certificate | None:
     """Return a certificate that there is no plan; ``None`` if that is not proved before time is up.
 
-    Also return ``None`` if the certificate is beyond the limits of the verifier, or if rules are covered and
-    units have rates that differ from those of their motions.
+    Also return ``None`` if the certificate is beyond the limits of the verifier. The result is ``None``, too,
+    if rules are covered and units have rates that differ from the rates of their motions.
     """
     if covered.rules and problem.own_rates:
         return None
@@ -149,10 +149,10 @@ class _PlanQuestion:
     ) -> tuple[Any, Vector | None] | None:
         """Prove that no plan costs less than the plan in hand by an objective, or prove a bound.
 
-        Only plans that are as good by ``earlier_objectives`` count. Return the JSON of the proof, and its
-        bound if this is below the cost of the plan in hand, else ``None``. Such a bound is only proved for
-        the first objective. If the plan in hand costs nothing, the proof is empty. Return ``None`` if nothing
-        is proved.
+        Only plans that are as good by ``earlier_objectives`` count. Return a pair: the JSON of the proof, and
+        the proved bound. The bound is ``None`` if no plan costs less than the plan in hand. A bound below
+        that cost is proved for the first objective only. If the plan in hand costs nothing, the proof is
+        empty. Return ``None`` instead of a pair if nothing is proved.
         """
         earlier_levels = [self._level(earlier_objective) for earlier_objective in earlier_objectives]
         if any(level is None for level in earlier_levels):
@@ -274,7 +274,7 @@ class _PlanQuestion:
     def rounded_number(self, condition: Rounded) -> int:
         """Return the number of a rounded condition in the certificate.
 
-        A new condition is added, after the rounded conditions that it is a sum of.
+        A new condition is added to the certificate, after the rounded conditions that it adds up.
         """
         number = next(
             (i for i, earlier_condition in enumerate(self._rounded) if earlier_condition is condition), None
@@ -314,15 +314,15 @@ class _PlanQuestion:
         return self._units[action]
 
     def limit_and_scale(self, number: int) -> tuple[int, int]:
-        """Return the number in the certificate of a limit of the prover, and the scale of its integers."""
+        """Return the certificate's number of a limit of the prover, and the scale of its integers."""
         rule_number, _, scale = self._limits[number]
         return rule_number, scale
 
     def _unreachable_nodes(self) -> list[int]:
-        """Return unreachable nodes, ascending, which prove that no plan executes certain irrelevant units.
+        """Return unreachable nodes, ascending, which show that certain irrelevant units cannot be executed.
 
-        These units could cross a cut or add a balanced node, or they add one of the returned nodes. Each of
-        them has one of the returned nodes as a precondition.
+        The proofs look at nodes of cuts and balanced nodes. Each irrelevant unit that adds such a node has a
+        returned node as a precondition. So does each unit that adds a returned node.
         """
         flows, units, removed = self._problem.flows, set(self._units), self._ruled.removed
         proof_nodes = {o for cut in self._cuts for o in cut} | self._balanced
@@ -346,7 +346,7 @@ class _PlanQuestion:
         return [unit for unit in self._problem.makers[o] if o in self._problem.flows[unit].adds]
 
     def _amounts_json(self) -> list[list[Any]]:
-        """Return the JSON of the amounts of all units of the data: a unit, its inputs and its outputs.
+        """Return the JSON of stated amounts: for each unit of the data, a list of its id, inputs and outputs.
 
         Inputs and outputs are pairs of a node id and an amount. Units without stated amounts are left out.
         """
@@ -410,7 +410,7 @@ class _ProofWriter:
 
     ``order``: the order of costs by an objective that multiplies rates, else ``None``.
     ``levels``, ``scales``: the levels of earlier objectives, and the scales of their integers.
-    ``columns``: the id of the kitchen item of each column of the linear program that is not an action.
+    ``columns``: for each column of the linear program that is no action, the id of its kitchen item.
     """
 
     def __init__(

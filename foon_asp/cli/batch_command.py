@@ -73,15 +73,16 @@ def command(
     {"goal": "@goals", "items": "used-up", "stock": "stock.txt"}
     {"goal": "ice", "amount": [1, 8]}
 
-    @goals stands for the goals file, @makeable for everything that can be made; a list within the list is one
-    tree for several goals, and so is one of amounts for the amounts of these; kitchens, stocks and what stays
-    are files in the folder of the questions; the kitchen @starting is what makes the units of each file run.
-    --time-limit is for each question without a limit of its own, --memory-limit for each process that
-    answers, and rules hold for all questions.
+    @goals stands for all goals of the goals file, @makeable for everything that can be made. A list within
+    the list of goals asks for one tree that makes several goals; a list within the list of amounts has an
+    amount for each of them. Kitchens, stocks and lists of what stays are files in the folder of the
+    questions. The kitchen @starting is what makes the units of each file run. --time-limit is for each
+    question without a limit of its own, --memory-limit for each process that answers. Rules hold for all
+    questions.
 
-    When the same command is run again, it continues: what has an answer is not asked again. A question that
-    fails becomes a row with the reason. Exits with 0 when every answer is proved, 1 when some failed, and
-    with 3 when a limit stopped some, or ctrl-C the run.
+    When the same command is run again, it continues: questions with an answer are not asked again. A question
+    that fails becomes a row with the reason. Exits with 0 when every answer is proved, 1 when some questions
+    failed, and 3 when a limit stopped some or ctrl-C the run.
     """
     check_outputs()
     data["folder"], data["network"] = shared_options.folder_and_networks(

@@ -12,7 +12,7 @@ def kitchen_lines(dataset: Dataset, problems: Iterable[Problem], verbose: bool) 
     """Yield a line on the assumed starting kitchen, with the number of its items that problems can use.
 
     The line also names the first six used items that some unit makes, and how many more there are. With
-    ``verbose``, a line for each of the items follows, which says whether some unit makes the item.
+    ``verbose``, a line for each used item follows. It says whether some unit makes the item.
     """
     used_items = {
         problem.network.object_number(o): problem.network.objects[o]
@@ -39,7 +39,7 @@ def goal_lines(dataset: Dataset, goals: Sequence[ObjectNode], verbose: bool) -> 
     """Yield a line which says that ``goals`` were assumed, and where they come from.
 
     They come from the goals file, from marks in the files, or from the last unit. The line names the goal if
-    there is only one. If there are several, ``verbose`` adds a line for each.
+    there is only one. If there are several goals, ``verbose`` adds a line for each.
     """
     origin = {"": "of the goals file", MARKED: "marked in the files"}.get(dataset.goals_from)
     if len(goals) == 1:

@@ -77,7 +77,7 @@ class DataSource:
         return self._network.different_motions
 
     def motion_sources(self) -> Iterable[tuple[str, Source]]:
-        """Return pairs of the motion of a unit and the source of this unit.
+        """Return pairs of a motion and the source of a unit with this motion.
 
         A motion may be repeated. The first unit of each motion is among the units.
         """
@@ -106,12 +106,10 @@ class DataSource:
         available: Container[int],
         max_units: int | None,
     ) -> "Cone | None":
-        """Return the cone of goals: all units that the goals can need.
-
-        Return ``None`` for a network in memory.
+        """Return the cone of goals: all units that the goals can need; ``None`` for a network in memory.
 
         ``goals``, ``available``: ids of object nodes. Units that make available nodes are not needed.
-        ``containers``, ``utensils``: the container rule, and the labels that it is about.
+        ``containers``, ``utensils``: the container rule, and the labels of utensils for it.
         ``max_units``: about how many units the cone has at most, those nearest to the goals;
         ``None`` for no limit.
         """
@@ -127,8 +125,8 @@ class DataSource:
         """Return the distance of each unit: a lower bound on the cost of any tree with the unit.
 
         Return ``None`` for a network in memory. The nodes of ``kitchen``, by id, are available. Inputs whose
-        labels are ``utensils`` cost nothing. A unit costs 1, or if ``objective`` is ``success``, minus the
-        scaled logarithm of its rate; see :class:`UnitDistances`.
+        labels are ``utensils`` cost nothing. A unit costs 1. If ``objective`` is ``success``, it costs minus
+        the scaled logarithm of its rate instead; see :class:`UnitDistances`.
         """
         return None
 
@@ -142,13 +140,13 @@ class DataSource:
     def unit_prices(self, network: Network, from_file: bool) -> Mapping[FunctionalUnit, Fraction] | None:
         """Return the prices that a store has for single units of ``network``; ``None`` if there are none.
 
-        With ``from_file``, prices of the imported file take precedence over the prices that the imported
-        networks state. Otherwise, only the prices that the imported networks state are returned.
+        The prices are those that the imported networks state. With ``from_file``, the prices of the imported
+        file are added, and take precedence.
         """
         return None
 
     def unpriced(self, prices: DataPrices) -> Sequence[Unpriced]:
-        """Return, for each motion with unpriced units, their number and the source of the first one."""
+        """Return each motion of unpriced units, with their number and the source of the first one."""
         network = self._network
         unit_prices = UnitPrices(prices.motions or {}, prices.units).of_units(network)
         unpriced = (unit for unit, price in enumerate(unit_prices) if price is None)

@@ -65,8 +65,8 @@ def pose_problem(
     ``containers``: the name of the container rule.
     ``items``: how items are used up; ``None`` if they last.
 
-    The user measures are those of ``origin``. If one of its motions has no success rate, the problem has no
-    rates.
+    The user measures are those of ``origin``. If a motion of ``origin`` has no success rate, the problem has
+    no rates.
 
     Raises :class:`UserError` for an unknown container rule, and for contradictory amounts if items are used
     up.
@@ -111,9 +111,9 @@ class Dataset:
     ``stand_ins``: the table of stand-ins; ``None`` where nothing may stand in.
     ``stock``: the amounts that the kitchen states; other items never run out.
 
-    A dataset never changes: the methods ``with_...`` and ``vary`` return another one. It has no remarks if
-    kitchen, goals, rates or prices are changed. Its ``has_kitchen`` is true if kitchen, rates or prices are
-    changed. :meth:`with_kitchen_for` is an exception from both.
+    A dataset never changes: the methods ``with_...`` and ``vary`` return another one. If kitchen, goals,
+    rates or prices change, the other one has no remarks. If kitchen, rates or prices change, its
+    ``has_kitchen`` is true. Only :meth:`with_kitchen_for` keeps both.
     """
 
     source: DataSource
@@ -177,7 +177,7 @@ class Dataset:
 
     @cached_property
     def data(self) -> Data:
-        """The whole data, without warnings; of a store, everything is read at the first access."""
+        """The whole data, without warnings. A store is read completely at the first access."""
         network = self.source.whole_network()
         items = self.source.kitchen_items() if self.kitchen_items is None else self.kitchen_items
         return self._data_with(network, self.kitchen.ids)._replace(kitchen_items=items)
@@ -227,7 +227,7 @@ class Dataset:
 
     @property
     def whole_network(self) -> Network:
-        """The whole network; of a store, units and nodes are read on access."""
+        """The whole network. In a store, each unit and node is read when it is accessed."""
         return self.source.network_read_on_access()
 
     @property
@@ -252,8 +252,8 @@ class Dataset:
         """Return the dataset with the kitchen that it has in a question about these goals, by id.
 
         A starting kitchen loses goals that units make, and may gain other nodes; see
-        :meth:`StartingKitchen.changes_for_goals`. Nodes that were removed from it stay removed. Any other
-        kitchen stays as it is.
+        :meth:`StartingKitchen.changes_for_goals`. Nodes that were removed from a starting kitchen stay
+        removed. Any other kitchen stays as it is.
         """
         if not self.starting:
             return self
@@ -268,9 +268,11 @@ class Dataset:
     def command_goal_ids(self, names: Sequence[str | ObjectNode]) -> tuple[int, ...]:
         """Return the ids of the goals that a command names, each once.
 
-        Without names, return all assumed goals, or the node of the only entry of the goals file. Raises
-        :class:`UserError` for a name that means no object node or several. Without names, it is raised if the
-        file has several entries, or if there is no goal to assume.
+        Without names, return all assumed goals, or the node of the only entry of the goals file.
+
+        Raises :class:`UserError`
+        - for a name that means no object node or several, and
+        - without names, if the file has several entries, or if there is no goal to assume.
         """
         if not names and self.goals_from and not self.goal_entries:
             raise UserError(
@@ -294,15 +296,15 @@ class Dataset:
         return self.listed_goals() if self.goals_from else []
 
     def listed_goals(self) -> list[ObjectNode]:
-        """Return the goals of the goals file, or if there is no file, those that were assumed, each once."""
+        """Return the goals of the goals file, each once. If there is no file, return the assumed goals."""
         return [self.names.node(o) for o in dict.fromkeys(self.goal_ids(()))]
 
     def goal_ids(self, names: Sequence[str | ObjectNode]) -> list[int]:
         """Return the id of the goal for each name, in order; an id may be repeated.
 
-        Without names, return the ids of all nodes that match entries of the goals file; if there is no file,
-        of the goals that were assumed. Raises :class:`GoalError` for a name that means no object node or
-        several, and for an entry that matches none.
+        Without names, return the ids of all nodes that match entries of the goals file. Without names and
+        file, return the ids of the assumed goals. Raises :class:`GoalError` for a name that means no object
+        node or several, and for an entry that matches none.
         """
         if names:
             return [
@@ -316,8 +318,8 @@ class Dataset:
     def with_kitchen(self, items: Sequence[ListedObject]) -> "Dataset":
         """Return the same data with another kitchen: the nodes that match entries of a kitchen file.
 
-        The amounts in these entries become the stock. Entries that match no node are ignored. The remarks are
-        dropped, and the kitchen counts as given.
+        ``items`` are the entries, whose amounts become the stock. Entries that match no node are ignored. The
+        remarks are dropped, and the kitchen counts as given.
         """
         names = self.names
         patterns = [pattern_at_level(item.pattern, names.level) for item in items]
@@ -363,8 +365,8 @@ class Dataset:
     ) -> "Dataset":
         """Return the same data with other remarks: ``warnings``, then ``remarks``.
 
-        Its :attr:`brief` remarks are ``brief``, a summary of the warnings, then ``remarks``. ``has_kitchen``
-        says whether a kitchen was given.
+        The parameter ``brief`` is a summary of the warnings. The field :attr:`brief` of the result has this
+        summary, then ``remarks``. ``has_kitchen`` says whether a kitchen was given.
         """
         all_remarks, brief_remarks = (*warnings, *remarks), (*brief, *remarks)
         return replace(self, remarks=all_remarks, brief=brief_remarks, has_kitchen=has_kitchen)
@@ -376,8 +378,8 @@ class Dataset:
     def with_stand_in_table(self, table: StandInTable | None) -> "Dataset":
         """Return the same data with stand-ins by a table; without stand-ins if ``table`` is ``None``.
 
-        With a table, assumed goals that are not of the first file are dropped, unless this leaves none. The
-        other files are there to help make the goals of the first one.
+        With a table, only the assumed goals of the first file are kept, if it has any. The other files are
+        there to help make the goals of the first one.
         """
         goals = self.goal_entries
         if table is not None and self.goals_from and len(goals) > 1:
@@ -394,9 +396,9 @@ class Dataset:
     ) -> "Dataset":
         """Return the same data with object nodes, by id, added to the kitchen and removed from it.
 
-        If there is a ``replacement``, its nodes first take the place of the whole kitchen, and no item has a
-        stock. With ``None``, the kitchen is kept, with the stock of all items that are not added. Added nodes
-        never run out. The remarks are dropped, and the kitchen counts as given.
+        If there is a ``replacement``, its nodes first replace the whole kitchen, and no item has a stock. If
+        it is ``None``, the kitchen and its stock are kept. Added nodes never run out. The remarks are
+        dropped, and the kitchen counts as given.
         """
         if replacement is not None:
             kitchen = Kitchen(replacement, added, removed)
@@ -410,9 +412,9 @@ class Dataset:
     ) -> "Dataset":
         """Return the same data with some success rates and some prices replaced or added.
 
-        ``rates`` are by motion, ``unit_prices`` by motion or unit. ``None`` for one of them keeps all. Unless
-        both are ``None``, the remarks are dropped. A kitchen that was assumed still counts as assumed. Raises
-        :class:`UserError` as :func:`changed_rates` and :func:`changed_prices` do.
+        ``rates`` are by motion, ``unit_prices`` by motion or unit. ``None`` keeps all rates, or all prices.
+        Unless both are ``None``, the remarks are dropped. A kitchen that was assumed still counts as assumed.
+        Raises :class:`UserError` as :func:`changed_rates` and :func:`changed_prices` do.
         """
         if rates is None and unit_prices is None:
             return self
@@ -427,8 +429,8 @@ class Dataset:
     def vary(self, changes: Changes) -> "Dataset":
         """Return the same data with changes, as :meth:`foon_asp.Foon.vary` does.
 
-        The rates, prices and measures are changed first, then the kitchen is replaced, then items are added,
-        and last removed. Numbers of copies, which a new kitchen may have by name, become the stock. Entries
+        The rates, prices and measures are changed first. Then the kitchen is replaced, items are added, and
+        items are removed. A new kitchen may have numbers of copies by name, which become the stock. Entries
         of a kitchen file that match no object node cause a warning. Without any change, return this dataset
         itself. Raises :class:`UserError` for an unknown name.
         """
@@ -465,10 +467,10 @@ class Dataset:
     ) -> Problem:
         """Return a variation of a problem over changed data, as :meth:`Problem.vary` describes.
 
-        The changes begin from the kitchen of the problem. ``None`` keeps its goals or its container rule.
-        Items are used up as in the problem; with another kitchen, the stock is that of the other kitchen. The
-        rates that the problem has for single units are kept. Of a store, only units near the goals are read;
-        see :meth:`nearby`.
+        The changes begin from the kitchen of the problem. For ``None``, its goals or its container rule are
+        kept. Items are used up as in the problem. With another kitchen, their stock is that of the other
+        kitchen. The rates that the problem has for single units are kept. Of a store, only units near the
+        goals are read; see :meth:`nearby`.
         """
         dataset = self.with_kitchen_of(problem).vary(changes)
         ids = _whole_goal_ids(problem) if goals is None else dataset.python_goal_ids(goals)
@@ -547,10 +549,14 @@ class Dataset:
     ) -> "Subject":
         """Return the network with stand-ins and the kitchen that a certificate is about.
 
+        ``steps`` are the ids of the units of a tree.
+
         The network has these stand-ins:
-        - without ``steps``, those for the goals, and with ``everything``, also those that no goal needs;
-        - with ``steps``, the ids of the units of a tree, those for the repair of this tree.
-        Without a table of stand-ins, it has none. The subject has no digests of a store.
+        - with ``steps``, those for the repair of this tree;
+        - without ``steps``, those for the goals;
+        - with ``everything`` and without ``steps``, also those that no goal needs.
+
+        Without a table of stand-ins, the network has none. The subject has no digests of a store.
         """
         from foon_asp.proof.certificate_subject import Subject  # noqa: PLC0415 (few answers need it)
 
@@ -567,9 +573,12 @@ class Dataset:
     def python_goal_ids(self, names: Names) -> tuple[int, ...]:
         """Return the ids of the goals that a Python caller names, each once.
 
-        Without a name, return the node of the only entry of the goals file; if there is no file, the only
-        goal that was assumed. Raises :class:`UserError` for a name that means no object node or several.
-        Without a name, it is raised if there are several goals or none.
+        Without a name, return the node of the only entry of the goals file. Without a name and a file, return
+        the only assumed goal.
+
+        Raises :class:`UserError`
+        - for a name that means no object node or several, and
+        - without a name, if there are several goals or none.
         """
         named = tuple(dict.fromkeys(node_ids(self, names, "goal")))
         if named:
@@ -588,8 +597,8 @@ class Dataset:
     def with_kitchen_of(self, problem: Problem) -> "Dataset":
         """Return the same data with the kitchen of ``problem``, a problem that was made from this dataset.
 
-        No more of a store is read. If the problem is about a part of the network, nodes outside it stay as
-        they are.
+        No more of a store is read. If the problem is about a part of the network, only nodes of this part are
+        added to the kitchen or removed from it.
         """
         from foon_asp.dataset.nearby import without_reading_more  # noqa: PLC0415 (few answers need it)
 
@@ -617,7 +626,7 @@ class Dataset:
         return problem_items - own_items, own_items - problem_items
 
     def unpriced(self) -> Sequence[Unpriced]:
-        """Return, for each motion with unpriced units, their number and the source of the first one."""
+        """Return each motion of unpriced units, with their number and the source of the first one."""
         return self.source.unpriced(self.prices)
 
     def problem(
@@ -629,12 +638,12 @@ class Dataset:
     ) -> Problem:
         """Return the problem of goals, by id and in this order, under the container rule ``containers``.
 
-        Of a store, its network has only the units that the goals can need; with ``everything``, all units. Of
-        data in memory, it has all units in any case. Stand-ins, if any, are also units of the network; with
-        ``everything``, even those that no goal needs.
+        The network of the problem is whole if the data are in memory, or with ``everything``. Otherwise, it
+        has only the units that the goals can need. Stand-ins, if any, are also units of the network; with
+        ``everything``, even stand-ins that no goal needs.
 
-        ``items`` says how items are used up; ``None`` if items last. Then the goals can also need units that
-        make items of the stock, since these may run out.
+        ``items`` says how items are used up; ``None`` if items last. If items are used up, the goals can also
+        need units that make items of the stock, since these items may run out.
         """
         dataset = self.with_kitchen_for(goals)
         if self.stand_ins is not None:
@@ -658,9 +667,10 @@ class Dataset:
     ) -> Problem:
         """Return the problem of goals; of a store, only about ``units_at_first`` units are read now.
 
-        These are near the goals. All other units that the goals can need are read when a field of the problem
-        is accessed; see :class:`NearbyProblem`. They are all read now if no kitchen was given, if items are
-        used up, or if there are stand-ins. Of data in memory, the problem is that of :meth:`problem`.
+        The units read now are near the goals. All other units that the goals can need are read when a field
+        of the problem is accessed; see :class:`NearbyProblem`. All are read now if no kitchen was given, if
+        items are used up, or if there are stand-ins. Of data in memory, the problem is that of
+        :meth:`problem`.
         """
         cone = None
         if items is None and self.has_kitchen and self.stand_ins is None:
@@ -705,9 +715,9 @@ class Dataset:
     ) -> tuple[Data, tuple[int, ...]]:
         """Return a part of the data, and the ids that the goals have in the network of the part.
 
-        The part has at least the ``goals`` and ``units``, both by id, and the units and nodes of ``tree``
-        that the network has. Its kitchen is the one for the goals. Raises :class:`UserError` for an id in
-        ``units`` that no unit has.
+        The part has at least the ``goals`` and ``units``, both by id. It also has the units and nodes of
+        ``tree`` that the network has. Its kitchen is the one for the goals. Raises :class:`UserError` for an
+        id in ``units`` that no unit has.
         """
         units, names = list(units), self.names
         for unit in units:

@@ -32,10 +32,11 @@ def items_for(
 
     ``amounts`` has the number of copies wanted of each goal, in the order of the goals. If it is empty, the
     amounts of the goals file count. ``items`` is ``used-up``, ``lasting`` or ``None``. With ``None``, items
-    are used up if some goal has an amount, and last otherwise.
+    are used up if some goal has an amount, and last otherwise. With ``lasting``, amounts of the goals file
+    are ignored.
 
     Raises :class:`UserError` as :func:`items_of` does, for ``amounts`` that do not fit the goals, and for
-    ``amounts`` together with ``lasting``. Amounts of the goals file are ignored with ``lasting``.
+    ``amounts`` together with ``lasting``.
     """
     if not amounts:
         amounts_by_id = dataset.goal_amounts
@@ -75,13 +76,13 @@ def items_of(
 ) -> UsedUp | None:
     """Return how items are used up, or ``None`` if they last.
 
-    The stock of the result has the copies that the kitchen states. Items that the kitchen lacks by now are
-    left out.
-
     ``items``: ``used-up`` or ``lasting``.
     ``stock``: numbers of copies of kitchen items, which replace those that the kitchen states.
     ``stays``: for labels or nodes, whether they stay (true) or are used up, against the usual rule.
     ``wanted``: the number of copies of each goal; the result has only those above 1.
+
+    The stock of the result has the copies that the kitchen states. Items that are no longer in the kitchen
+    are left out.
 
     Raises :class:`UserError` for
     - another word as ``items``,
@@ -121,7 +122,7 @@ def require_contents(level: int) -> None:
 def _read_exceptions(dataset: Dataset, stays: Stays) -> dict[str | ObjectNode, bool]:
     """Return the exceptions from the usual rule: by label or node, true if it stays, false if it is used up.
 
-    ``stays`` is the path of a file, or a mapping of names. Raises :class:`UserError` for a name that the
+    ``stays`` is the path of a file, or a mapping from names. Raises :class:`UserError` for a name that the
     network lacks.
     """
     if isinstance(stays, str | PathLike):

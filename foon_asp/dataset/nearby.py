@@ -39,7 +39,8 @@ class Nearby:
     """A problem of a store over the units read so far, which are near its goals; :meth:`grow` reads more.
 
     A node is *open* if it is needed, but not all units that make it were read.
-    ``cone``: the units read, out of all units that the goals can need.
+
+    ``cone``: the units read so far.
     ``data``: the dataset.
     ``containers``: the name of the container rule.
     """
@@ -91,9 +92,9 @@ class Nearby:
     def relaxation(self) -> Problem:
         """The relaxation of the problem in which all open nodes are available.
 
-        In any tree of the whole network, the units that were read are a tree of the relaxation: each of their
-        inputs is available, made by another such unit, or open. So the optimum of the relaxation is a lower
-        bound on the optimum of the whole network, for objectives that are sums over units.
+        For objectives that are sums over units, its optimum is a lower bound on the optimum of the whole
+        network. The reason: from any tree of the whole network, the units that were read are a tree of the
+        relaxation.
 
         User rules see the kitchen without the open nodes. So a rule that does not depend on the available
         nodes holds for the same units here as in the whole network.
@@ -108,8 +109,8 @@ class Nearby:
     def open_nodes_used(self, units: Iterable[int]) -> list[int]:
         """Return the open nodes that a tree of the relaxation needs and does not make.
 
-        They are ids in the whole network, sorted. If there are none, the tree is also a tree of
-        :attr:`problem`. ``units`` are the units of the tree by id in :attr:`problem`, in an order that
+        They are ids in the whole network, sorted. If the list is empty, the tree is also a tree of
+        :attr:`problem`. ``units`` are the units of the tree, by id in :attr:`problem`, in an order that
         executes in the relaxation.
         """
         problem = self.problem
@@ -123,8 +124,8 @@ class Nearby:
     def grow(self, objects: Iterable[int], step: int) -> None:
         """Read more units that lead to ``objects``, open nodes by id in the whole network.
 
-        With ``n`` units read so far, ``n // step + 1`` more are read: a smaller ``step`` reads more. Then
-        :attr:`problem` and :attr:`relaxation` are new problems, with these units and with other local ids.
+        If ``n`` units were read so far, about ``n // step + 1`` more are read. Then :attr:`problem` and
+        :attr:`relaxation` are new problems over all units read, with other local ids.
         """
         self._cone.grow(objects, len(self._cone.units) // step + 1)
         self._problem = self._relaxation = None
@@ -137,7 +138,7 @@ class Nearby:
     def open_nodes_needed(self, units: Iterable[int]) -> list[int]:
         """Return the open nodes among the goals and the inputs of units, by id in the whole network, sorted.
 
-        ``units`` are ids in :attr:`problem`. A node counts also if one of the units makes it.
+        ``units`` are ids in :attr:`problem`. Open nodes that one of the units makes are included.
         """
         problem, open_nodes = self.problem, self._cone.open
         needed = {o for unit in units for o in problem.needs[unit]}.union(problem.goals)
@@ -147,14 +148,14 @@ class Nearby:
 class _FieldReadLater:
     """A field of a :class:`NearbyProblem`, whose value is read at the first access to any such field.
 
-    A problem with its own values (without ``start``) has its own value, which needs no reading.
+    A problem without ``start`` has its own value of the field, and nothing is read.
     """
 
     def __set_name__(self, owner: type, name: str) -> None:
         self._name, self._own_name = name, f"_own_{name}"
 
     def __get__(self, problem: "NearbyProblem | None", owner: type) -> Any:
-        """Return the value of :attr:`~NearbyProblem.full_problem`; without ``start``, the own value."""
+        """Return the value of :attr:`~NearbyProblem.full_problem`; without ``start``, the problem's own."""
         if problem is None:
             return self
         return (
@@ -170,9 +171,9 @@ class _FieldReadLater:
 class NearbyProblem(Problem):
     """A problem of a large store; all units that its goals can need are read at the first access to a field.
 
-    These fields are the network, the kitchen, the goals and the prices. Searches that need fewer units use
-    :meth:`nearby` instead. A copy with changed fields has its own values: those passed to it. It reads
-    nothing.
+    This holds for four fields: the network, the kitchen, the goals and the prices. Searches that need fewer
+    units use :meth:`nearby` instead. A copy of the problem with changed fields has its own values: those
+    passed to it. The copy reads nothing.
     """
 
     network: Network = _FieldReadLater()  # type: ignore[assignment]
@@ -213,7 +214,7 @@ class NearbyProblem(Problem):
     def single_goal_problems(self) -> list[Problem]:
         """Return a problem for each goal by itself, for which about ``units_at_first`` units are read.
 
-        If all units of this problem were read, or if it has its own values, nothing is read: these problems
+        If all units of this problem were read, or if it has its own values, nothing is read: the new problems
         have its network.
         """
         start = self.start

@@ -29,11 +29,12 @@ if TYPE_CHECKING:  # plain answers do not need it
 class RefinementTuning(NamedTuple):
     """How many units of a store are read in each round, and when rounds do without a proof.
 
-    ``proved_units``: up to this number of units read, each round proves the optimality of its tree, which is
-    quick and reads the fewest units. Above it, trees without a proof choose the units to read next. With
-    twice as many, the hardest questions take twice as long (``benchmarks/store.py``, family ``deep``).
+    ``proved_units``: the greatest number of units read at which a round proves the optimality of its tree.
+    Proofs are quick for few units, and the fewest units are read. Above this number, trees without a proof
+    choose the units to read next. If the number is doubled, the hardest questions take twice as long
+    (``benchmarks/store.py``, family ``deep``).
     ``narrow_step``: a round reads one more unit for each ``narrow_step`` units that were read.
-    ``wide_step``: the same for long rounds, where it matters less to read few units.
+    ``wide_step``: replaces ``narrow_step`` in long rounds, where it matters less to read few units.
     """
 
     proved_units: int = 1_500
@@ -68,19 +69,19 @@ def solve_nearby(
     """Solve a problem of a large store by relaxation and refinement, reading only units that are needed.
 
     Each round solves the relaxation, in which open nodes are available. If its optimal tree uses no open
-    node, this tree is also optimal in the whole network. Otherwise more units that lead to these nodes are
+    node, this tree is also optimal in the whole network. Otherwise more units that lead to the open nodes are
     read. This repeats until a tree is optimal or all units are read.
 
-    User rules have to be antimonotone: if a tree keeps them, so does every part of the tree. For rules that
-    only clingo can check, the units of the optimal tree without rules are read first, then those of the
-    smallest tree that keeps the rules.
+    User rules have to be antimonotone: if a tree keeps them, so does every part of the tree. If only clingo
+    can check the rules, two trees choose the units that are read first. The first is the optimal tree without
+    rules, the second is the smallest tree that keeps the rules.
 
     At a limit or ctrl-C, return the best tree among the units read, or an outcome without a tree. Its bound
     on the first objective is the tightest of all rounds. If the rules exclude all trees, return an outcome
     that says so. Return ``None`` if no tree exists even without rules: the caller then reads all units, to
     explain why.
 
-    Warnings and bounds are passed to ``reporter``, but of the trees only the last one.
+    ``reporter`` receives warnings, bounds and the last tree.
     """
     reporter = reporter or Reporter()
     if settings.constraints:
@@ -183,8 +184,9 @@ def _read_smallest_tree(nearby: "Nearby", settings: Settings, units_of_rules: se
     """Search for the tree of fewest units that keeps the rules, reading units until it is found.
 
     Return its units by id in the whole network. Return an empty list if there is no such tree, and at a limit
-    or ctrl-C. The fewest units are found faster than the optimum of other objectives, and better trees mostly
-    use units near this tree. ``units_of_rules`` collects the ids of the units on which the rules depend.
+    or ctrl-C. ``units_of_rules`` collects the ids of the units on which the rules depend.
+
+    This tree is found faster than the optimum of other objectives, and better trees mostly use units near it.
     """
     while True:
         outcome = solve(nearby.relaxation, (Objective.UNITS,), settings, mattered=units_of_rules)
@@ -206,9 +208,9 @@ def _read_more(
 ) -> None:
     """Read more units that lead to ``open_nodes``, which an optimal tree of the relaxation uses.
 
-    Without rules, and if more than :attr:`RefinementTuning.proved_units` units were read before, go on with
-    trees that ``h_add`` finds. Stop when one of the trees uses no open node. Such trees mostly lead to the
-    units of an optimal tree, in a tenth of the time of a proof.
+    Stop there if there are rules, or if at most :attr:`RefinementTuning.proved_units` units were read before.
+    Otherwise read units for trees that ``h_add`` finds, until one of them uses no open node. Such trees
+    mostly lead to the units of an optimal tree, in a tenth of the time of a proof.
     """
     many_read = nearby.unit_count > REFINEMENT.proved_units
     long_rounds = many_read or need_clingo(settings)

@@ -30,10 +30,10 @@ from foon_asp.store.unit_distances import UnitDistances, greatest_cost
 class NearbyTuning(NamedTuple):
     """How much of a large store is read one by one.
 
-    ``max_units``: the greatest number of far units read one by one; for more, reading the whole store is
-    faster.
+    ``max_units``: the greatest number of units read one by one, near the goals or far from them. For more,
+    reading the whole store is faster.
     ``widths``: limits on the units read for a first tree, tried in order. Each is a pair: the number of units
-    of a kind, and how many steps of distance they may lie beyond the nearest one.
+    of a kind, and how many steps farther they may be than the nearest unit of the farthest kind.
     """
 
     max_units: int = 30_000
@@ -86,7 +86,7 @@ class _Search:
     ``best``: the incumbent; it has no tree at first, and its bound is the optimum without rules.
 
     A *request* is a constraint that at least one unit of a set is in the tree. The *kind* of a request is the
-    mask of the units of the store that may be in this set.
+    mask of the units of the store that may be in its set.
     """
 
     def __init__(
@@ -102,8 +102,8 @@ class _Search:
         """Return the optimum, or the incumbent if a limit is reached or optimality is not proved.
 
         If no tree keeps the rules, return an outcome that proves this. Return ``None`` if the rules depend on
-        more than the units of a tree and its kitchen, or if the distances of units are not known. Raises
-        :class:`LimitError` at a limit while the store is read.
+        more than the units of a tree and its kitchen. Also return ``None`` if the distances of units are not
+        known. Raises :class:`LimitError` at a limit while the store is read.
         """
         settings, nearby = self._settings, self._nearby
         rules = rules_for_varying_kitchens(settings)
@@ -150,12 +150,12 @@ class _Search:
     ) -> Outcome:
         """Search for a tree that keeps the rules, first among few units, then among more.
 
-        The units are those of the optimum without rules, and the nearest units of each kind.
-        ``is_required``: for each kind, whether the rules always require a unit of it.
+        The units are those of the optimum without rules, and the nearest units of each kind. ``is_required``:
+        for each kind, whether the rules always require a unit of it.
 
-        The first tree becomes the incumbent, and ends the search; so does a limit. If no tree is found, the
-        status of the outcome is ``infeasible`` if a required kind has no unit that can execute. Otherwise it
-        is ``unknown``. Raises :class:`LimitError` at a limit while the store is read.
+        The search ends at the first tree, which becomes the incumbent, or at a limit. Without a tree, the
+        status is ``infeasible`` if a required kind has no unit that can execute. Otherwise it is ``unknown``.
+        Raises :class:`LimitError` at a limit while the store is read.
         """
         unconstrained_units = _whole_unit_ids(self._unconstrained)
         for max_units, max_steps in NEARBY.widths:
@@ -182,9 +182,9 @@ class _Search:
         ``best_outcome``: has the incumbent.
         ``kinds``: the kinds of requests; ``None`` if the rules may require any unit.
 
-        Return ``None`` if ``best_outcome`` has no tree, or if there are more than
-        :attr:`NearbyTuning.max_units` units near the goals or far from them. Raises :class:`LimitError` at a
-        limit.
+        Return ``None`` if ``best_outcome`` has no tree. Also return ``None`` if more than
+        :attr:`NearbyTuning.max_units` units lead to the goals, or if the other units are more than that
+        number. Raises :class:`LimitError` at a limit.
         """
         if best_outcome.costs is None or best_outcome.units is None:
             return None
@@ -223,9 +223,9 @@ class _Search:
     def _max_far_cost(self, costs: Costs) -> int:
         """Return the greatest distance that a far unit can have in a tree better than ``costs``.
 
-        The distance is a number of units, or for ``success`` a scaled logarithm; see :class:`UnitDistances`.
-        If a better tree can have any number of units, it is ``FAR - 1``, so that all units that can execute
-        count.
+        A far unit is one that leads to no goal. The distance is a number of units, or for ``success`` a
+        scaled logarithm; see :class:`UnitDistances`. If a better tree can have any number of units, return
+        ``FAR - 1``. Then all units that can execute count.
         """
         order, least_costs = self._order, self._unconstrained.costs
         assert least_costs is not None
@@ -240,8 +240,8 @@ class _Search:
     def _as_proved(self, outcome: Outcome) -> Outcome:
         """Return the outcome as proved for the whole network, and report its tree.
 
-        Its proof is by cuts only if the proofs with and without rules are both by cuts. The cuts themselves
-        and the cases are omitted, because they hold only for a part of the network.
+        Its proof is by cuts only if the proofs with and without rules are both by cuts. The cuts and cases of
+        the proof are omitted, because they hold only for a part of the network.
         """
         assert outcome.costs is not None
         self._reporter.tree(outcome.costs)
@@ -256,9 +256,10 @@ def _whole_unit_ids(outcome: Outcome) -> list[int]:
 
 
 def _outcome_without_tree(nearby: Nearby, unconstrained: Outcome) -> Outcome:
-    """Return ``unconstrained`` without its tree and proof, of unknown status, over the problem of ``nearby``.
+    """Return the outcome ``unconstrained`` without its tree and proof, for the problem of ``nearby``.
 
-    It keeps only the bound on the first objective, and the limit that stopped it, if any.
+    Its status is unknown. It keeps only the bound on the first objective, and the limit that stopped it, if
+    any.
     """
     first_objective = levels(unconstrained.objectives)[0]
     bounds = {

@@ -12,8 +12,10 @@ class DataPrices(NamedTuple):
 
     ``motions``: the prices by motion; ``None`` where no file lists any.
     ``units``: the prices of single units that are in memory.
-    ``from_file``: of a store, whether the imported file of prices still counts for units without a price in
-    ``units``. The prices that the imported networks state count in any case, after those of the file.
+    ``from_file``: whether the imported file of prices of a store still counts.
+
+    A price in ``units`` comes first. Then comes one of the imported file, if it counts. Last is a price that
+    the imported networks state.
     """
 
     motions: Mapping[str, Fraction] | None = None

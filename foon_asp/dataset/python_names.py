@@ -24,7 +24,7 @@ class NamedData(Protocol):
 
     @property
     def goal_entries(self) -> Sequence[ListedObject]:
-        """The entries of the goals file; a goal may be named as they name it."""
+        """The entries of the goals file. The names in them are also names of the goals."""
 
     def at_hand(self, o: int) -> bool:
         """Whether an object node, by id, is in the kitchen."""
@@ -40,7 +40,7 @@ class NodeAndUnitNames(NodeNames, Protocol):
 def node_id(dataset: NamedData, name: str | ObjectNode, noun: str) -> int:
     """Return the id of a named node in the whole network; ``noun`` is what it is, such as ``kitchen item``.
 
-    Names that the goals file has are also understood if the noun is ``goal``. An :class:`ObjectNode` is
+    If the noun is ``goal``, names that the goals file has are also understood. An :class:`ObjectNode` is
     compared at the level of the network. Raises :class:`UserError` with candidates for a name that means no
     object node, or several.
     """
@@ -64,10 +64,10 @@ def node_ids(dataset: NamedData, names: Names, noun: str) -> list[int]:
 def stated_copies(
     dataset: NamedData, amounts: Mapping[Any, int | None], noun: str, least: int = 1
 ) -> dict[ObjectNode, int]:
-    """Return numbers of copies by object node, from ``amounts`` by name; ``None`` as an amount is left out.
+    """Return numbers of copies by object node, from ``amounts`` by name; names with ``None`` are left out.
 
-    ``noun`` is what the names are, as in :func:`node_id`. Raises :class:`UserError` as :func:`node_id` does,
-    and for a number that is not a whole one from ``least`` to :data:`MAX_AMOUNT`.
+    ``noun`` is what the names are, as in :func:`node_id`. Raises :class:`UserError` as :func:`node_id` does.
+    Also raises it for a number that is not a whole one from ``least`` to :data:`MAX_AMOUNT`.
     """
     copies: dict[ObjectNode, int] = {}
     for name, amount in amounts.items():
@@ -86,8 +86,12 @@ def item_id(dataset: NamedData, name: str | ObjectNode) -> int:
     """Return the id of a named kitchen item.
 
     A label means the item that has no more than this label. Without such an item, it means the only item with
-    the label. Raises :class:`UserError` for a name that is no item, and for a label of several items, with
-    these items as candidates. In a store, a label of more than twelve nodes also raises it.
+    the label.
+
+    Raises :class:`UserError`
+    - for a name that is no item,
+    - for a label of several items, with the items as candidates, and
+    - in a store, for a label of more than twelve nodes.
     """
     names = dataset.names
     label = None if isinstance(name, ObjectNode) else _bare_label(name)
@@ -129,11 +133,11 @@ def changed_rates(
 ) -> Mapping[str, Fraction] | None:
     """Return success rates by motion: ``rates``, with those in ``changed`` replaced or added.
 
-    If ``changed`` is ``None``, return ``rates``, which may be ``None`` for no rates.
-    ``motions``: all motions of the network.
+    If ``changed`` is ``None``, return ``rates``; ``None`` for no rates. ``motions``: all motions of the
+    network.
 
-    Raises :class:`UserError` for a rate that is not above 0 and at most 1. If there are ``rates``, it is also
-    raised for a motion that is in neither ``rates`` nor ``motions``.
+    Raises :class:`UserError` for a rate that is not above 0 and at most 1. If there are ``rates``, also
+    raises it for a motion that is in neither ``rates`` nor ``motions``.
     """
     if changed is None:
         return rates
@@ -153,7 +157,7 @@ def changed_rates(
 def changed_prices(
     prices: UnitPrices, changed: UnitPricesNamed, motions: Collection[str], names: NodeAndUnitNames
 ) -> UnitPrices:
-    """Return ``prices`` with those in ``changed``, which are by motion and by unit, replaced or added.
+    """Return ``prices`` with the prices in ``changed``, by motion or unit, replaced or added.
 
     ``motions``: all motions of the network.
     ``names``: looks up units. Below level 3, the price of a unit counts for all units of level 3 that were

@@ -28,9 +28,9 @@ from foon_asp.text.unit_price_list import read_unit_prices
 def read_store(files: DataFiles, level: int) -> Dataset:
     """Open the store that is named as the network; other named files replace what was imported.
 
-    Below level 3, the whole store is read and closed, since nodes are merged at such a level. Entries of the
-    named files that match nothing in the store become remarks. Other remarks are about motions without a
-    success rate, nodes that a unit lists twice, and lines that were left out of the store. Raises
+    Below level 3, the whole store is read and closed, since nodes are merged at such a level. There are
+    remarks about entries of the named files that match nothing in the store. Other remarks are about motions
+    without a success rate, nodes that a unit lists twice, and lines that were left out of the store. Raises
     :class:`UserError` if a second network is named.
     """
     if len(files.network) > 1:

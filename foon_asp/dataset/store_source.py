@@ -47,7 +47,7 @@ class StoreSource(DataSource):
 
     @cached_property
     def _amounts_and_warnings(self) -> tuple[DataAmounts, list[Diagnostic]]:
-        """The amounts with the table of amounts, and warnings about rows of the table that match no unit."""
+        """The amounts, changed by the table, and warnings about rows of the table that match no unit."""
         units = (
             self.names.units_with_motions({row.name[0] for row in self._amount_table})
             if self._amount_table
@@ -174,7 +174,7 @@ class StoreSource(DataSource):
         return self.names.unit_prices(network, from_file) if self.names.has_unit_prices else None
 
     def unpriced(self, prices: DataPrices) -> Sequence[Unpriced]:
-        """Return, for each motion with unpriced units, their number and the source of the first one."""
+        """Return each motion of unpriced units, with their number and the source of the first one."""
         return self.names.unpriced(prices.motions or {}, prices.units, prices.from_file)
 
     def kitchen_items(self) -> tuple[ListedObject, ...]:

@@ -60,10 +60,10 @@ def diagnostics(checked: CheckedText) -> list[Json]:
 def completion(text: EditedText, names: Names, parameters: object) -> Json:
     """Return the completions at the position in the parameters of a request, at most 100.
 
-    These are the names of the kinds that may stand there and that contain the text before the position. Names
-    that begin with this text come first, and then the most frequent. Case is ignored. The text typed so far
-    is a completion only if it also stands elsewhere. ``isIncomplete`` says that more than 100 names match. At
-    the beginning of a line, the completions are those of :func:`_line_head_items`.
+    At the beginning of a line, the completions are those of :func:`_line_head_items`. In a field, a name is a
+    completion if its kind may stand there and it contains the text before the position. Names that begin with
+    this text come first, and then the most frequent. Case is ignored. The text typed so far is a completion
+    only if it also stands elsewhere. ``isIncomplete`` says that more than 100 names match.
     """
     line, letter = text.requested_position(parameters)
     content = text.lines[line]
@@ -91,8 +91,7 @@ def _completion_item(
     """Return the completion item of a name in a field of a line.
 
     If the head of the line has no id, the item adds the most frequent id of the name. After a word of
-    relations at the end of the line, it adds a tab and the opening bracket that is more frequent after the
-    word.
+    relations at the end of the line, it adds a tab and the opening bracket that most often follows the word.
     """
     count, mentions = names.counts[kind][name], names.mentions[kind][name]
     ids = _id_counts(names, kind, name)
@@ -129,8 +128,8 @@ def _id_counts(names: Names, kind: NameKind, name: str) -> Counter[str]:
 def _line_head_items(text: EditedText, line: int, letter: int, names: Names) -> list[Json]:
     """Return completions of the beginning of a line: ``O``, ``S``, ``M`` and their tabs, or ``//``.
 
-    After a letter and digits, they are the names whose id begins with these digits, at most 100. JSON has no
-    completions, and neither has a line with text after the position.
+    After a letter and digits, they are the names whose id begins with these digits, at most 100. Return no
+    completions for JSON, or if text follows the position in the line.
     """
     content = text.lines[line]
     if text.is_json or content[letter:].strip():
@@ -243,10 +242,10 @@ def _escape_markdown(text: str) -> str:
 
 
 def _definitions(checked: CheckedText, parameters: object) -> list[Json]:
-    """Return where the achievers of an object node list it as an output; the node is that of a line.
+    """Return the locations at which achievers list an object node as an output.
 
-    If a unit is not found to list the node, its location is its first line. Return no locations if the line
-    belongs to no node.
+    The node is the one to which the line in the parameters belongs. Return no locations if the line belongs
+    to no node. If a unit is not found to list the node, its location is its first line.
     """
     text = checked.text
     node = _node_at(checked, text.requested_position(parameters)[0])

@@ -34,8 +34,8 @@ class EditedText:
     def requested_position(self, parameters: object) -> tuple[int, int]:
         """Return line and letter of the position in the parameters of a request.
 
-        A position below the text is in its last line, and one beyond the end of a line is at its end. Raises
-        :class:`RequestError` for parameters without a position.
+        A line below the text becomes the last line. A letter beyond the end of the line becomes the end.
+        Raises :class:`RequestError` for parameters without a position.
         """
         line = min(parameter(parameters, "position.line", int), len(self.lines) - 1)
         column = parameter(parameters, "position.character", int)

@@ -21,8 +21,8 @@ class Field(NamedTuple):
     ``kinds``: the kinds that the name may have.
     ``start``, ``end``: the index of the first letter of the name, and the index after the last.
     ``letter``: the letter of the line, O, S or M.
-    ``id``: the id of the name at the head of the line, empty without one; ``None`` if the head has the id of
-    another name.
+    ``id``: the id at the head of the line, if it is the id of this name; empty if the head has no id.
+    ``None`` if the id at the head is that of another name.
     """
 
     kinds: tuple[NameKind, ...]

@@ -31,8 +31,8 @@ class RequestError(Exception):
 def read_message(stream: BinaryIO) -> Json | None:
     """Read the next message from a stream, and wait for it.
 
-    Return ``{}`` for a message that is no JSON object. Return ``None`` at the end of the stream, and for a
-    message whose length is 0 or no number: where it ends is not known.
+    Return ``{}`` for a message that is no JSON object. Return ``None`` at the end of the stream. Also return
+    ``None`` for a message whose length is 0 or no number, since its end is not known.
     """
     length = 0
     while (line := stream.readline()).strip():

@@ -134,7 +134,7 @@ class LanguageServer:
             self._schedule_check(EditedText(text.uri, parameter(change, "text", str)), 0.25)
 
     def _close_text(self, parameters: object) -> None:
-        """Forget a text that the editor has closed; its check is cancelled, its findings are withdrawn."""
+        """Forget a text that the editor has closed, cancel its check, and withdraw its findings."""
         uri = self._text_of(parameters).uri
         self._checks.pop(uri).cancel()
         self._checked.pop(uri, None)

@@ -50,7 +50,7 @@ def run(
         products: The number of products of rates in the facts.
         endless: Whether grounding may not terminate; then it runs in another process.
 
-    If a limit or ctrl-C stops the grounding, nothing is raised, and the run has no answer and is not
+    If a limit or ctrl-C stops the grounding, nothing is raised. The run then has no answer, and is not
     exhausted. The deadline records ctrl-C. Raises :class:`UserError` (see
     :func:`foon_asp.encoding.encoding.program_fault`) if clingo refuses the program.
     """

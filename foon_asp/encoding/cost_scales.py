@@ -12,7 +12,7 @@ from foon_asp.problem.number import INT32_MAX
 
 
 class CostScale(NamedTuple):
-    """Integer weights of costs, for an objective by which costs of units are fractions and add up.
+    """Integer weights of costs, for an objective whose costs are fractions and add up.
 
     ``scale``: the number by which costs are multiplied.
     ``exact``: whether no weight is rounded.
@@ -32,7 +32,7 @@ def cost_scale(costs: Iterable[Fraction]) -> CostScale:
     """Return the scale of the costs of units; ``costs`` has one for each unit.
 
     If the least common denominator turns all costs into integers of 32 bits, it is the scale, and weights are
-    exact. Otherwise, weights are rounded down, and the scale is the greatest by which they fit into 32 bits,
+    exact. Otherwise, weights are rounded down. The scale is then the greatest by which they fit into 32 bits,
     but at most 10^8. The sum of all weights may exceed 32 bits.
     """
     costs = list(costs)
@@ -49,8 +49,9 @@ def cost_scale(costs: Iterable[Fraction]) -> CostScale:
 def require_one_rounded(problem: Problem, objectives: Iterable[Objective]) -> None:
     """Raise :class:`UserError` if two or more of the objectives have to be rounded.
 
-    Success has to be rounded if some rate is not 1. Another objective has to be if no scale turns its costs
-    into integers of 32 bits. All units of the network count, so that the error does not depend on the goals.
+    The objective ``success`` has to be rounded if some rate is not 1. Any other objective has to be rounded
+    if no scale turns its costs into integers of 32 bits. All units of the network count, so that the error
+    does not depend on the goals.
     """
     fractions = [objective for objective in objectives if multiplies(objective) or not objective.row.whole]
     if len(fractions) < 2:
@@ -161,9 +162,9 @@ class Scales:
     def vector(self, units: Iterable[int]) -> dict[int, int]:
         """Return the vector of units, which determines their exact total by the rounded objective.
 
-        For success, its entries are the exponents of their rates' product, by factor number
-        (:class:`RateScale`). For any other objective, they are the numbers of units of each cost, by the
-        index of the cost. Entries of 0 are included.
+        For success, the entries are the exponents of the product of rates, by factor number
+        (:class:`RateScale`). For any other objective, the entries are the numbers of units of each cost, by
+        the index of the cost. Entries of 0 are included.
         """
         assert self.rounded is not None
         if multiplies(self.rounded):
@@ -190,8 +191,8 @@ class Scales:
     def bound(self, objective: Objective, weight: int) -> int | Fraction:
         """Return the bound on the cost by an objective that follows from a lower bound on weights.
 
-        For success, it is an upper bound, and 1 if no rates are known. For other objectives, it is a lower
-        bound. ``weight`` is the lower bound on weights.
+        ``weight`` is the lower bound on weights. For success, the result is an upper bound; it is 1 if no
+        rates are known. For other objectives, the result is a lower bound.
         """
         if multiplies(objective):
             return Fraction(1) if self.rates is None else self.rates.success_bound(weight)
@@ -200,8 +201,8 @@ class Scales:
     def allows(self, objective: Objective, weight: int, figure: int | Fraction) -> bool:
         """Return whether units of a total ``weight`` can have the cost ``figure`` by an objective.
 
-        If the objective is rounded, all costs that are no better than :meth:`bound` can have that weight.
-        Otherwise, only one cost has it.
+        If the objective is not rounded, only the cost :meth:`bound` is possible. If it is rounded, this cost
+        and all worse costs are possible.
         """
         bound = self.bound(objective, weight)
         if objective is not self.rounded:

@@ -70,8 +70,8 @@ _IDENTIFIER = re.compile(r"[a-z][A-Za-z0-9_]*")
 class Encoding:
     """A parsed file or text of rules: the predicates that it defines and uses, and its constants.
 
-    The name of a negated atom (``-p``) begins with a minus. Places are those of first occurrences; for rules
-    without a file, their name stands in place of the file.
+    The name of a negated atom (``-p``) begins with a minus. Each place is that of the first occurrence. In
+    rules without a file, the name of the rules stands for the file.
 
     Attributes:
         rules: The file or text.
@@ -216,13 +216,13 @@ class _Collector(Transformer):
             self.visit(statement)
 
     def visit_Rule(self, rule: AST) -> AST:  # noqa: N802 (the name clingo looks for)
-        """Visit a rule; the atoms in its head are recorded as defined, those in its body as used."""
+        """Visit a rule; record the atoms in its head as defined, and the atoms in its body as used."""
         self._visit_head(rule.head)
         self.visit_sequence(rule.body)
         return rule
 
     def visit_External(self, external: AST) -> AST:  # noqa: N802
-        """Visit ``#external``; its atom is recorded as defined, those in its body as used."""
+        """Visit ``#external``; record its atom as defined, and the atoms in its body as used."""
         self._visit_head(external.atom)
         self.visit_sequence(external.body)
         return external
@@ -311,13 +311,18 @@ def check_encodings(
     Ready-made constraints among ``added``, and built-in files among ``base``, are not searched for errors.
     ``others`` are further built-in files that are loaded.
 
-    Return two kinds of warnings. One is for a predicate in a body of ``added`` that nothing defines, and
-    suggests the most similar one. The other is for a term in the user's constraints that is compared with
-    numbers and can never be a number.
+    Return two kinds of warnings:
+
+    - A predicate in a body of ``added`` is not defined anywhere; the most similar one is suggested.
+    - A term in the user's constraints is compared with numbers, but can never be a number.
 
     Raises :class:`InputError` for statements that would change the set of trees or their order, or that
-    clingo would ignore silently. These are rules for built-in predicates, reserved names, constants that
-    replace a name elsewhere, and statements other than rules.
+    clingo would ignore silently:
+
+    - rules for built-in predicates,
+    - reserved names,
+    - constants that replace a name elsewhere,
+    - statements other than rules.
     """
     errors: list[Diagnostic] = []
     defined = set(PUBLIC)
@@ -357,9 +362,9 @@ def check_encodings(
 def non_numeric_terms(statements: Iterable[AST], constants: Collection[str]) -> Iterator[tuple[AST, str]]:
     """Yield the terms that are compared with numbers but are no numbers, each with a message.
 
-    Such a term is above every number. There are two kinds: a name that is not in ``constants``, which are the
-    names that ``#const`` statements set, and a text as guard of a count or sum. In comparisons with ``=`` and
-    ``!=`` alone, terms are not looked at.
+    In clingo's order, such a term is above every number. It is either a name that no ``#const`` statement
+    sets, or a text as guard of a count or sum. The names that ``#const`` statements set are in ``constants``.
+    Comparisons with only ``=`` and ``!=`` are ignored.
     """
     for node in (node for statement in statements for node in nodes(statement)):
         terms: list[AST] = []
@@ -386,7 +391,7 @@ def non_numeric_terms(statements: Iterable[AST], constants: Collection[str]) -> 
 def _is_built_in(rules: Loaded) -> bool:
     """Whether rules are a built-in encoding, or a ready-made constraint as file or with constants set.
 
-    The folder of the file decides, so a built-in file that was changed counts, too. The result is cached.
+    The folder of the file decides, so a changed built-in file is still built-in. The result is cached.
     """
     path = rules.file if isinstance(rules, Stated) else rules
     return path is not None and path.resolve().is_relative_to(encodings_folder().resolve())
@@ -404,8 +409,8 @@ def _statement_errors(encoding: Encoding, refused: Sequence[ASTType]) -> list[Di
 def _definition_errors(encoding: Encoding, owned: frozenset[Signature]) -> list[Diagnostic]:
     """Return an error for each predicate that rules define although a constraint may not.
 
-    These are the predicates in ``owned``, which are those of facts and of the built-in encodings, and those
-    with a reserved name. A minus before an atom is ignored.
+    A constraint may not define predicates in ``owned``, which has the facts and the built-in predicates. It
+    may not define predicates with a reserved name either. A minus before an atom is ignored.
     """
     return [
         encoding.remark(
@@ -446,7 +451,7 @@ def _reserved_name_errors(encoding: Encoding) -> list[Diagnostic]:
 def _replaced_definition_errors(encoding: Encoding) -> list[Diagnostic]:
     """Return an error for each reserved predicate in a head of a file that replaces a built-in one.
 
-    Those that a built-in file of the same name defines, also in ``by_need``, are allowed.
+    A predicate is allowed if a built-in file of the same name defines it, also one in the folder ``by_need``.
     """
     name = encoding.rules.name if isinstance(encoding.rules, Path) else ""
     built_in_files = [
@@ -467,9 +472,10 @@ def _replaced_definition_errors(encoding: Encoding) -> list[Diagnostic]:
 
 
 def _constant_errors(encoding: Encoding, names: set[str]) -> list[Diagnostic]:
-    """Return errors for constants with a reserved name, or a name in the facts or in another file.
+    """Return errors for constants with a reserved name, or with a name in the facts or in another file.
 
-    There, the value of the constant would replace the name. ``names`` are the names in other files.
+    In the facts or the other file, the value of the constant would replace the name. ``names`` are the names
+    in other files.
     """
     return [
         encoding.remark(
@@ -512,9 +518,8 @@ def undefined_message(signature: Signature, defined: set[Signature]) -> str:
 def constant_arguments(constants: Sequence[str], encodings: Sequence[Encoding]) -> list[str]:
     """Return settings ``NAME=VALUE`` as arguments of clingo: ``-c`` and ``NAME=VALUE`` by turns.
 
-    Each value gets the type of the default in its ``#const``. Where the default is a string, the value
-    becomes a string, with or without quotes. Where the default is a number, the value has to be an integer of
-    32 bits.
+    Each value gets the type of the default in its ``#const``. If the default is a string, the value may be
+    given with or without quotes. If the default is a number, the value has to be an integer of 32 bits.
 
     Raises :class:`UserError` for a setting of another form, an unknown name, and a value of another type.
     Also raises it for a constant that only a ready-made constraint with its own values has.
@@ -565,9 +570,8 @@ def unset_constant_warnings(added: Sequence[Encoding], constants: Sequence[str])
     Such a constant has the default ``""``, ``#sup`` or ``#inf``, and is not set by ``constants``, which are
     settings ``NAME=VALUE``.
 
-    There is no warning if facts can stand in for the constant. Then a rule derives a predicate with the
-    constant, as in ``allergen(forbidden_ingredient).``, and another file derives this predicate, too, as in
-    ``allergen("milk").``
+    There is no warning if facts can replace the constant. For example, a rule derives
+    ``allergen(forbidden_ingredient)`` from a constant, and another file has the fact ``allergen("milk").``
     """
     settings_given = {setting.partition("=")[0] for setting in constants}
     warnings = []
@@ -618,10 +622,10 @@ def program_fault(
 ) -> InputError | UserError:
     """Return clingo's messages about a program as one error for the user.
 
-    It is :class:`InputError`, with places and source lines, if a message has a place. Otherwise it is
-    :class:`UserError` with the text of the messages. Without messages, its text is ``otherwise``, the text of
+    If a message has a place, the error is :class:`InputError`, with places and source lines. Otherwise it is
+    :class:`UserError` with the text of the messages. Without messages, the text is ``otherwise``, that of
     clingo's exception. Of several messages about one place, only the first is kept. ``files`` are the files
-    and texts of the program; the source lines of a text are looked up in it.
+    and texts of the program; source lines are looked up in them.
     """
     errors: dict[Source, Diagnostic] = {}
     for message in messages:
@@ -652,7 +656,7 @@ def program_fault(
 
 
 def _dropped_message(message: str, term: str) -> str:
-    """Return a message for the user: clingo would drop an instance of a rule or aggregate element, and why.
+    """Return a message for the user that clingo would drop an instance of a rule or aggregate element.
 
     ``message`` is the reason as clingo states it, and ``term`` the term that it names.
     """
@@ -678,8 +682,8 @@ def located_diagnostic(
 ) -> Diagnostic:
     """Return a diagnostic with its source line, found in ``files`` or in the file of ``source``.
 
-    A place in a ready-made constraint with constants of its own is replaced by the place in its file, and the
-    message gets the text of the option. A place after the end of a text is moved to the end.
+    In a ready-made constraint with constants of its own, the place becomes the place in its file. The message
+    then gets the text of the option. A place after the end of a text is moved to the end.
     """
     for rules in files:
         if isinstance(rules, Stated) and rules.place == source.file:

@@ -38,10 +38,13 @@ _SUFFIX = ".lp"
 def included_files(path: Path) -> list[Path]:
     """Return an encoding and all files that it includes, directly or not, each once.
 
-    A file may include files in its own folder and below. Raises :class:`InputError` with all faults of the
-    files: other includes, a ``#script``, a call ``@f(...)``, letters that clingo does not read outside of
-    quotes, numbers beyond its range, and text that is not UTF-8. Raises :class:`UserError` for a file whose
-    name does not end in ``.lp``.
+    A file may include files in its own folder and below. Raises :class:`UserError` for a file whose name does
+    not end in ``.lp``. Raises :class:`InputError` with all faults of the files:
+
+    - other includes,
+    - a ``#script`` or a call ``@f(...)``,
+    - letters that clingo does not read outside of quotes, and text that is not UTF-8,
+    - numbers beyond clingo's range.
     """
     files: dict[Path, Path] = {}  # by resolved path
     pending = [path]
@@ -69,7 +72,7 @@ def source_line(source: Source) -> str:
 
 
 class _Token(NamedTuple):
-    """A token: its kind, which is a group name of ``_TOKEN``, its text, and its offset in the program."""
+    """A token: its kind (a group name of ``_TOKEN``), its text, and its offset in the program."""
 
     kind: str
     text: str
@@ -79,8 +82,8 @@ class _Token(NamedTuple):
 def check_text(text: str, origin: str) -> None:
     """Raise :class:`InputError` for rules given as text that clingo must not read.
 
-    They have an ``#include``, or a fault for which :func:`included_files` raises it. ``origin`` is their name
-    in messages. Raises :class:`UserError` for a text that has no encoding in UTF-8.
+    An ``#include`` is a fault, and so is anything that :func:`included_files` calls a fault. ``origin`` is
+    the name of the rules in messages. Raises :class:`UserError` for a text that has no encoding in UTF-8.
     """
     errors: list[Diagnostic] = []
     if any("\ud800" <= letter <= "\udfff" for letter in text):
@@ -118,7 +121,8 @@ def _check_content(text: str, origin: str, file: Path | None, errors: list[Diagn
     """Append the errors of a text to ``errors``, and return the files that it may include.
 
     ``file`` is the file that has the text; a text without a file may include nothing. ``origin`` is its name
-    in messages. Nothing is read after a ``#script``, or if the text has a zero character.
+    in messages. After a ``#script``, nothing is read. In a text with a zero character, only this character is
+    reported.
     """
     lines = text.split("\n")
 
@@ -196,7 +200,10 @@ def _include_refusal(file: Path, target: str) -> str:
 
 
 def _tokens(text: str) -> Iterator[_Token]:
-    """Yield the tokens of a program, without blanks and comments, up to a block comment that never ends."""
+    """Yield the tokens of a program, without blanks and comments.
+
+    If a block comment never ends, the tokens before it are the last.
+    """
     offset = 0
     while match := _TOKEN.match(text, offset):
         kind = str(match.lastgroup)
@@ -215,8 +222,8 @@ def _tokens(text: str) -> Iterator[_Token]:
 def string_constant(value: str) -> str:
     """Return the text that a setting of a string constant means.
 
-    It may be in quotes; then escaped characters in it are resolved. Raises :class:`UserError` for a setting
-    that begins with a quote and is no string of clingo.
+    The setting may be in quotes; then escaped characters in it are resolved. Raises :class:`UserError` for a
+    setting that begins with a quote and is no string of clingo.
     """
     if not value.startswith('"'):
         return value

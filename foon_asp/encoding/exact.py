@@ -18,10 +18,10 @@ def _divide(a: int, b: int) -> int:
 
 
 def _power(a: int, b: int) -> int:
-    """Return ``a ** b``; instead of a huge power, a smaller number that is still beyond clingo's numbers.
+    """Return ``a ** b``; a huge power is replaced by a smaller number that is beyond clingo's numbers, too.
 
-    Raises :class:`_BeyondError` for a negative exponent, where clingo returns wrong values. If ``a`` is 0, it
-    raises ``ZeroDivisionError`` instead.
+    Raises :class:`_BeyondError` for a negative exponent, for which clingo returns wrong values. If ``a`` is
+    0, a negative exponent raises ``ZeroDivisionError`` instead.
     """
     if b < 0 and a:
         raise _BeyondError  # for clingo 2**(-1) is 0, and so is 1**(-1)

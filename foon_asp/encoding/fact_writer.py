@@ -86,13 +86,16 @@ def write_facts(
 ) -> str:
     """Return the facts about units of a problem, their object nodes, the kitchen and the goals.
 
-    There is one line per unit and per object node. In the facts, these have the numbers that users see. The
-    kitchen is the part that user rules see; its other items become facts ``available/1``.
+    There is one line per unit and per object node. Units and object nodes have the numbers that users see.
+    Facts ``kitchen/1`` are about the part of the kitchen that user rules see. Facts ``available/1`` are about
+    the other items of the kitchen.
 
     ``scales`` have the weights of ``risk/2`` and ``cost/3``; without scales, ``rate/2``, ``risk/2`` and
-    ``cost/3`` are omitted. ``looked_at`` are the predicates that user rules read; ``None`` if there are no
-    user rules. If there are, facts about sources, videos and prices of units are added; prices only if all
-    are whole numbers of hundredths.
+    ``cost/3`` are omitted.
+
+    ``looked_at`` are the predicates that user rules read; ``None`` if there are no user rules. With user
+    rules, facts about sources, videos and prices of units are added. Prices are left out if some price is not
+    a whole number of hundredths.
 
     Raises :class:`UserError` if user rules read prices and a price is no whole number of hundredths. Also
     raises it for numbers and names that clingo cannot take.
@@ -121,9 +124,10 @@ def write_facts_read(
     """Return the facts of :func:`write_facts` that have the predicates in ``read``.
 
     The facts ``utensil/1``, ``goal/1`` and ``available/1`` are always included. Without ``scales``,
-    ``risk/2`` and ``cost/3`` are omitted, but not ``rate/2``. The fact ``stock/2`` is never written. Raises
-    :class:`UserError` if prices are read and a price is no whole number of hundredths, and for numbers and
-    names that clingo cannot take.
+    ``risk/2`` and ``cost/3`` are omitted, but ``rate/2`` is not. The fact ``stock/2`` is never written.
+
+    Raises :class:`UserError` if prices are read and a price is no whole number of hundredths. Also raises it
+    for numbers and names that clingo cannot take.
     """
     problem_seen = problem.as_seen or problem
     object_number = problem.network.object_number
@@ -135,7 +139,7 @@ def write_facts_read(
     object_predicates = {name for name in OBJECT_FACTS if (name, FACT_PREDICATES[name]) in read}
 
     def add(atoms: Iterable[_Atom]) -> None:
-        """Add a line with those of the atoms whose predicates are in ``read``, if there are any."""
+        """Add a line with all atoms whose predicates are in ``read``, unless there are no such atoms."""
         texts = [_atom_text(atom) for atom in atoms if (atom[0], FACT_PREDICATES[atom[0]]) in read]
         if texts:
             lines.append(". ".join(texts) + ".")
@@ -160,10 +164,10 @@ def write_facts_read(
 
 
 def _utensil_and_goal_facts(problem: Problem, nodes: Sequence[int]) -> Iterator[str]:
-    """Yield the facts about utensils and goals, and about kitchen items that user rules do not see.
+    """Yield the facts ``utensil/1`` and ``goal/1``, and ``available/1`` for items that user rules do not see.
 
-    ``nodes`` are ids: ``utensil/1`` is about their labels. ``available/1`` is about those of them that are in
-    the kitchen, but not in the part of it that user rules see.
+    ``nodes`` are ids of object nodes. Labels of these nodes that are utensils get ``utensil/1``. A node gets
+    ``available/1`` if it is in the kitchen, but not in the part of the kitchen that user rules see.
     """
     object_number = problem.network.object_number
     labels = {problem.network.objects[o].label for o in nodes}
@@ -231,9 +235,11 @@ def _unit_atoms(
 ) -> list[_Atom]:
     """Return the facts about a unit, except ``unit/1``.
 
-    ``read`` has the names of predicates to write. Facts of other predicates are added: ``rate/2``, ``risk/2``
-    and ``cost/3`` if there are scales, ``stays/2`` and ``uses_up/2`` if items are used up. Facts about
-    sources, videos and the price are added unless ``prices`` is ``None``.
+    ``read`` has the names of predicates to write. Some facts are written whether they are in ``read`` or not:
+
+    - ``rate/2``, ``risk/2`` and ``cost/3`` if there are scales,
+    - ``stays/2`` and ``uses_up/2`` if items are used up,
+    - sources, videos and the price, unless ``prices`` is ``None``.
     """
     network = problem.network
     inputs, object_number = network.inputs[unit], network.object_number
@@ -280,8 +286,8 @@ def prices_in_hundredths(
     """Return the price of each unit that has one, in hundredths, by unit id.
 
     The result is empty if no prices are known, if a price is no whole number of hundredths, or if the sum of
-    the prices overflows. In these cases, :class:`UserError` is raised instead if ``price/2`` is in
-    ``looked_at``, the predicates that rules read.
+    the prices overflows. ``looked_at`` are the predicates that rules read. If ``price/2`` is among them,
+    :class:`UserError` is raised instead of an empty result.
     """
     if problem.unit_prices is None:
         if _PRICE in looked_at:
@@ -317,7 +323,7 @@ def _object_atom(problem: Problem, o: int) -> str:
 
 
 def _object_atoms(problem: Problem, o: int) -> list[_Atom]:
-    """Return the facts about an object node without ``object/1`` and ``kitchen/1``."""
+    """Return the facts about an object node, except ``object/1`` and ``kitchen/1``."""
     number = problem.network.object_number(o)
     return [(name, f"{number},{arguments}") for name, arguments in object_facts(problem.network.objects[o])]
 
@@ -339,7 +345,7 @@ def object_facts(node: ObjectNode, predicates: Collection[str] = OBJECT_FACTS) -
 
 
 def described_nodes(problem: Problem, units: Iterable[int]) -> list[int]:
-    """Return the goals and the inputs and outputs of units, as ids of object nodes in ascending order."""
+    """Return the ids of all goals, and of the inputs and outputs of units, in ascending order."""
     network = problem.network
     touched = {
         o for unit in units for objects_of in (network.inputs, network.outputs) for o in objects_of[unit]
@@ -379,9 +385,10 @@ def write_exponents(problem: Problem, scales: Scales) -> str:
 
 
 def write_product(number: int, exponents: Mapping[int, int]) -> str:
-    """Return facts ``_product(K,F,E)``: entry F of the vector of product number K of rates is E.
+    """Return facts ``_product(K,F,E)``: in product number K of rates, factor number F has the exponent E.
 
-    ``number`` is K; ``exponents`` is the vector, for success the exponent of each factor.
+    ``number`` is K; ``exponents`` has E by F. For an objective other than success, ``exponents`` is any
+    :meth:`Scales.vector`, and E is its entry F.
     """
     return "".join(f"_product({number},{factor},{_check_int32(e)}).\n" for factor, e in exponents.items())
 
@@ -392,9 +399,9 @@ def write_seen(numbers: Iterable[int]) -> str:
 
 
 def write_fewer(units: Mapping[int, int]) -> str:
-    """Return facts ``_fewer(K,N)``: trees of fewer than N units may have product number K all the same.
+    """Return facts ``_fewer(K,N)``: trees of fewer than N units may have product number K of rates.
 
-    ``units`` maps K to N.
+    They are exceptions to the facts of :func:`write_seen`. ``units`` maps K to N.
     """
     return "".join(f"_fewer({number},{count}).\n" for number, count in units.items())
 
@@ -417,7 +424,8 @@ def write_for_sale(prices: Mapping[int, int], second_choices: Iterable[int]) -> 
 def write_found_list(number: int, items: Iterable[int]) -> str:
     """Return facts ``_found_list(K)`` and ``_on_list(K,O)``: a shopping list that is known.
 
-    No list that contains it is found again. ``number`` is K; ``items`` are the numbers of its nodes.
+    No further list may contain all items of the known one. ``number`` is K; ``items`` are the numbers of its
+    nodes.
     """
     return f"_found_list({number}).\n" + "".join(f"_on_list({number},{o}).\n" for o in items)
 
@@ -425,7 +433,7 @@ def write_found_list(number: int, items: Iterable[int]) -> str:
 def write_constraints(weights: Mapping[int, int], kept: Iterable[int]) -> str:
     """Return facts ``_constraint(C,Weight)``, the cost of dropping constraint C, and ``_kept(C)``.
 
-    Constraints are given by number. Those in ``kept`` may not be dropped.
+    Constraints are given by number. Constraints in ``kept`` may not be dropped.
     """
     facts = [f"_constraint({number},{_check_int32(weight)}).\n" for number, weight in weights.items()]
     return "".join([*facts, *(f"_kept({number}).\n" for number in kept)])
@@ -434,7 +442,7 @@ def write_constraints(weights: Mapping[int, int], kept: Iterable[int]) -> str:
 def write_corrections(corrections: Iterable[Iterable[int]]) -> str:
     """Return facts ``_correction(K,C)``: constraint C is in correction set number K, from 0.
 
-    Without the constraints of a correction set, there is a tree. Constraints are given by number.
+    If all constraints of a correction set are dropped, there is a tree. Constraints are given by number.
     """
     return "".join(
         f"_correction({index},{number}).\n"
@@ -459,9 +467,9 @@ def write_greatest_penalty(penalty: int) -> str:
 
 
 def write_at_most(number: int, bounds: Mapping[Objective, int]) -> str:
-    """Return facts ``_at_most(K,Objective,N)``: of the upper bounds N of set K, at least one has to hold.
+    """Return facts ``_at_most(K,Objective,N)``: at least one of the upper bounds N in set K has to hold.
 
-    ``number`` is K. Raises ``ValueError`` for ``success``, which is no sum.
+    ``number`` is K; ``bounds`` has N by objective. Raises ``ValueError`` for ``success``, which is no sum.
     """
     if any(map(multiplies, bounds)):
         raise ValueError("success is a product, and no sum that a bound could be put on")
@@ -472,9 +480,9 @@ def write_at_most(number: int, bounds: Mapping[Objective, int]) -> str:
 
 
 def write_below(below: Iterable[Mapping[Objective, int | Fraction]], scales: Scales) -> str:
-    """Return facts ``_at_most(K,Objective,N)``: a tree has to undercut at least one cost of each set K.
+    """Return facts ``_at_most(K,Objective,N)``: for each set K of costs, a tree has to undercut at least one.
 
-    ``below`` are the sets, costs by objective; K is their index. Raises :class:`UserError` for an objective
+    Each set in ``below`` has costs by objective; K is its index. Raises :class:`UserError` for an objective
     that is rounded, or by which all units together weigh more than 32 bits.
     """
     return "".join(
@@ -555,7 +563,7 @@ def write_given(numbers: Collection[int]) -> str:
 
 
 def write_same_rates(classes: Sequence[Iterable[int]]) -> str:
-    """Return facts ``_same_rate(R,U)``: the units of each success rate number R.
+    """Return facts ``_same_rate(R,U)``: unit number U has success rate number R.
 
     ``classes`` has the numbers of the units with each rate; R is the index in ``classes``.
     """

@@ -17,7 +17,7 @@ NO_LIMIT = INT32_MAX  # clingo's limit of messages: beyond a lower one, a releva
 
 
 def listener(messages: list[str], max_kept: int = 1000) -> Callable[[MessageCode, str], None]:
-    """Return a logger for clingo that adds messages to ``messages``: errors, and instances that clingo drops.
+    """Return a logger for clingo that adds to ``messages`` the errors, and the instances that clingo drops.
 
     After ``max_kept`` messages, it adds only errors. Harmless messages are ignored, such as those about
     undefined atoms.
@@ -37,7 +37,7 @@ def listener(messages: list[str], max_kept: int = 1000) -> Callable[[MessageCode
 def refuse_messages(messages: list[str]) -> Iterator[None]:
     """Return a context that raises :class:`ProgramError` if clingo stops in its block, or leaves messages.
 
-    ``messages`` is the list to which a :func:`listener` adds them. It is looked at when the block ends.
+    ``messages`` is the list to which a :func:`listener` adds messages. It is looked at when the block ends.
     """
     try:
         yield

@@ -18,7 +18,7 @@ _DIGESTS = "SHA256SUMS"
 
 
 def is_own(file: Path) -> bool:
-    """Whether a file is a built-in encoding, ready-made constraints included, and unchanged."""
+    """Whether a file is an unchanged built-in encoding or ready-made constraint."""
     digests = _digests()
     expected = digests.get(file) or digests.get(file.resolve())
     return expected is not None and expected == digest(file)

@@ -36,7 +36,7 @@ def parse(rules: Loaded, add: Callable[[AST], None], logger: Callable[[MessageCo
 def load(control: Control, rules: Stated, logger: Callable[[MessageCode, str], None]) -> None:
     """Add rules that are in no file to a program.
 
-    In clingo's messages about them, the file is called by their name.
+    In clingo's messages about the rules, their name stands for a file name.
     """
     with ProgramBuilder(control) as builder:
         parse(rules, builder.add, logger)

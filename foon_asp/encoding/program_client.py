@@ -116,7 +116,7 @@ def _start_worker() -> Worker:
 
 
 def _release_worker(worker: Worker) -> None:
-    """Make a process drop its program, unless it is busy or dead, and return it to the pool."""
+    """Return a worker process to the pool; a process that is not busy or dead first drops its program."""
     if worker.is_ready:
         worker.tell(pack_message(("forget",)))
     give_back_worker(_KEY, worker)
@@ -147,8 +147,8 @@ def _ask(worker: Worker, deadline: Deadline, *command: object, handlers: _Handle
 def _error_of_death(code: int, has_spoken: bool, deadline: Deadline) -> UserError | LimitError:
     """Return the error for a process that died with an exit code.
 
-    If memory ran out, it is :class:`LimitError`, and this is recorded in the deadline. Otherwise it is a
-    :class:`UserError` that blames a division, the start of Python, or the rules.
+    If memory ran out, it is :class:`LimitError`, and the deadline records the lack of memory. Otherwise it is
+    a :class:`UserError` that blames a division, the start of Python, or the rules.
     """
     if code in _OF_MEMORY or (deadline.memory is not None and code == -signal.SIGSEGV):
         deadline.stop_out_of_memory()

@@ -28,7 +28,7 @@ class RateScale(NamedTuple):
 
     ``weights[p]`` is ``floor(scale * -ln p)``; a rate slightly below 1 may have the weight 0.
     ``exponents[p][f]`` is the exponent of factor number ``f`` in the rate ``p``. The factors are pairwise
-    coprime, so two products of rates are equal exactly when the sums of their exponents are.
+    coprime. So two products of rates are equal exactly when the sums of their exponents are equal.
     """
 
     scale: int
@@ -64,7 +64,7 @@ def rate_scale(rates: Collection[Fraction]) -> RateScale:
 
     The scale of the weights is a power of ten by which all weights fit into 32 bits. It is at most 10^8,
     except where a rate next to 1 would weigh almost 0. The exponents are those of coprime factors of the
-    rates: two products of rates are equal if and only if their exponents add up to the same sums. Raises
+    rates. Two products of rates are equal if and only if their exponents add up to the same sums. Raises
     ``ValueError`` for a rate outside of (0, 1].
     """
     if not all(0 < rate <= 1 for rate in rates):
@@ -78,8 +78,8 @@ def rate_scale(rates: Collection[Fraction]) -> RateScale:
 def _scale(logarithms: Collection[Decimal]) -> int:
     """Return the power of ten by which logarithms above 0 are multiplied to become weights.
 
-    It is 10^8 if there are no logarithms. If the greatest weight would exceed 32 bits, it is smaller. If the
-    least weight would be below 1000, it is greater, as far as 32 bits allow.
+    The usual result is 10^8, also without logarithms. It is smaller if the greatest weight would otherwise
+    exceed 32 bits. It is greater if the least weight would otherwise be below 1000, as far as 32 bits allow.
     """
     if not logarithms:
         return USUAL_SCALE

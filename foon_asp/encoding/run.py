@@ -8,9 +8,10 @@ from typing import NamedTuple
 
 
 class ProgramError(Exception):
-    """The refusal of a program or an option: by clingo, or because clingo would drop an instance of a rule.
+    """The refusal of a program or an option by clingo.
 
-    ``messages`` are clingo's reasons; ``otherwise`` is the text of its exception, empty if it raised none.
+    A program is refused also if clingo would drop an instance of a rule. ``messages`` are clingo's reasons;
+    ``otherwise`` is the text of its exception, empty if it raised none.
     """
 
     def __init__(self, messages: Sequence[str], otherwise: str) -> None:

@@ -83,8 +83,8 @@ def cross_check(
     all later ones say ``interrupted``.
 
     Raises :class:`DisagreementError` for the first engine whose answer differs. For an engine of another
-    package, this error is raised only if the engine's tree is valid and better than ours. Otherwise that
-    engine is wrong, and its claim is in :attr:`Check.refuted`.
+    package, it is raised only if the engine's tree is valid and better than ours. Otherwise, the engine is
+    wrong, and its claim is in :attr:`Check.refuted`.
     """
     if seconds is None:
         remaining = claim.settings.effective_deadline.remaining_seconds
@@ -127,7 +127,7 @@ def cross_check(
 def _check_by_clingo(claim: ClaimedAnswer, seconds: float) -> tuple[Objective, ...]:
     """Return the objectives by which bare clingo agrees; an empty tuple if there is no tree.
 
-    Raises as :func:`check_with_bare_clingo` or, for plans, :func:`check_plan_with_bare_clingo`.
+    Raises what :func:`check_with_bare_clingo` or, for plans, :func:`check_plan_with_bare_clingo` raises.
     """
     if claim.outcome.problem.items is not None:
         return bare_plans.check_plan_with_bare_clingo(claim, seconds)
@@ -158,10 +158,9 @@ def _check_by_engine(engine: Engine, claim: ClaimedAnswer, seconds: float) -> tu
 def agreed_objectives(outcome: Outcome, answer: EngineAnswer) -> tuple[Objective, ...]:
     """Return the objectives by which an engine finds our tree optimal, the most important first.
 
-    Costs are computed anew from the units, as rational numbers. An engine that works in floats may call a
-    tree optimal although it costs more than ours by less than the engine's precision. Then neither this
-    objective nor any less important one is in the result. The result is empty if both say that there is no
-    tree.
+    Costs are computed anew from the units, as rational numbers. The engine's tree may cost more than ours by
+    an objective, but by less than the engine's precision. Then neither this objective nor a less important
+    one is in the result. The result is empty if we and the engine say that there is no tree.
 
     Raises :class:`DisagreementError` if the two answers contradict each other, or the engine's tree does not
     execute. Raises :class:`NotCheckedError` if the engine found no answer in time, or its precision is too

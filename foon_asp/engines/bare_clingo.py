@@ -52,8 +52,8 @@ def check_with_bare_clingo(claim: ClaimedAnswer, seconds: float) -> None:
     """Have bare clingo answer the question of a claim, and raise an exception unless it agrees.
 
     Raises :class:`DisagreementError` if the two answers contradict each other. Raises
-    :class:`NotCheckedError` if clingo does not finish within ``seconds``, or its answer implies nothing about
-    ours.
+    :class:`NotCheckedError` if clingo does not finish within ``seconds``, or if clingo's answer implies
+    nothing about ours.
     """
     outcome = claim.outcome
     program = bare_program(outcome.problem, outcome.objectives, claim.settings, claim.soft)
@@ -107,8 +107,8 @@ class Clingo:
         ``extra_facts``: the facts ``_same_rate`` and ``_most_alike`` of ``second_opinion.lp``, which say
         which units have the same cost by the rounded objective.
 
-        Two answers are of one kind if they have equally many units of each such cost. Raises
-        :class:`NotCheckedError` if there are more than ``MAX_KINDS`` kinds, or clingo does not finish.
+        Two answers are of one kind if they have equally many units of each cost by the rounded objective.
+        Raises :class:`NotCheckedError` if there are more than ``MAX_KINDS`` kinds, or clingo does not finish.
         """
         mode = ",".join(["--opt-mode=enum", *map(str, bounds)])
         options = (mode, f"--models={MAX_KINDS + 1}", "--project=project")
@@ -186,8 +186,8 @@ def _read_witness(witness: dict[str, Any]) -> ClingoAnswer:
 class _Comparison:
     """The comparison of our answer with clingo's.
 
-    ``weights``: for each objective with fractions, the rounded cost of each unit in the facts, by the public
-    number of the unit. They are read from the facts at construction.
+    ``weights``: for each objective with fractions, the rounded costs of units by public number. They are read
+    from the facts at construction.
     """
 
     def __init__(self, claim: ClaimedAnswer, program: BareProgram, clingo: Clingo) -> None:
@@ -235,8 +235,9 @@ class _Comparison:
     def _check_our_tree(self, theirs: ClingoAnswer) -> ClingoAnswer:
         """Have clingo add up the costs of our tree; return our tree as an answer of clingo with these costs.
 
-        Raises :class:`DisagreementError` if our tree does not execute, its claimed costs or penalty are
-        wrong, or it breaks rules in clingo. ``theirs`` is clingo's own answer; the errors contain it.
+        Raises :class:`DisagreementError` if our tree does not execute or breaks rules in clingo. Also raises
+        it if the claimed costs or penalty are wrong. ``theirs`` is clingo's own answer; the errors contain
+        it.
         """
         units = check_tree(self.problem, EngineAnswer("foon-asp", self.levels, self.outcome.units, True))
         if self.problem.costs(units) != self.outcome.costs:
@@ -255,8 +256,8 @@ class _Comparison:
         """Return whether the costs in an answer of clingo are the sums of the costs of its units.
 
         A replaced encoding may add up other numbers. If no encoding is replaced, other numbers raise
-        :class:`DisagreementError`. The penalty of soft constraints is not compared. Raises as
-        :meth:`_executable_order` if the answer does not execute.
+        :class:`DisagreementError`. The penalty of soft constraints is not compared. If the answer does not
+        execute, raises what :meth:`_executable_order` raises.
         """
         costs = self.problem.costs(self._executable_order(answer))
         figures = [
@@ -429,15 +430,15 @@ def _count_each(classes: Iterable[Fraction], figures: Iterable[Fraction]) -> lis
 def tree_weight_bound(
     weights: Collection[tuple[Fraction, int]], our_costs: Collection[Fraction], multiplies: bool = True
 ) -> int:
-    """Return an upper bound on the sum of the weights of any tree that is at least as good as ours.
+    """Return an upper bound on the sum of weights of trees that are at least as good as ours.
 
     ``weights``: the distinct pairs of a unit's cost and its weight, which may be rounded in any way.
     ``our_costs``: the costs of our units.
     ``multiplies``: whether the costs are rates, which multiply.
 
-    Let L(c) = c for a cost, L(p) = -ln p for a rate, and S the maximum of w / L(c) over all units with a
-    cost. Then w <= S * L(c) for every unit. So the weights of any tree T add up to at most S * L(T), where
-    L(T) is the sum over its units. A tree as good as ours has an L(T) of at most that of our tree.
+    Let w be the weight of a unit. Let L be its cost or, for a rate p, -ln p. Let S be the maximum of w / L
+    over all units with L > 0. Then w <= S * L for every unit. So the weights of a tree add up to at most S
+    times the sum of L over its units. For a tree as good as ours, this sum is at most that of our tree.
 
     Raises :class:`NotCheckedError` for a unit that has a weight but no cost, since no such S exists then.
     Also raises it for a rate of 0, which has no logarithm.

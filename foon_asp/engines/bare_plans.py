@@ -20,13 +20,17 @@ from foon_asp.proof.replay import replay_for
 def check_plan_with_bare_clingo(claim: ClaimedAnswer, seconds: float) -> tuple[Objective, ...]:
     """Have bare clingo look for an optimal plan; return the objectives by which it agrees.
 
-    These are the objectives before the first one with fractions. Both plans are executed and compared by
-    them.
+    Both plans are executed, and compared by the objectives before the first one with fractions. All
+    objectives that are compared are returned.
 
     Raises :class:`DisagreementError` if clingo says that our plan breaks rules, costs another amount, or is
-    not optimal; also if clingo's plan does not run. Raises :class:`NotCheckedError` in these cases: we have
-    no optimal plan, nodes have amounts, the first objective has fractions, nothing bounds the number of
-    executions of a unit, or clingo does not finish within ``seconds``.
+    not optimal. Also raises it if clingo's plan does not run. Raises :class:`NotCheckedError` in these cases:
+
+    - We have no optimal plan.
+    - Nodes have amounts.
+    - The first objective has fractions.
+    - Nothing bounds the number of executions of a unit.
+    - clingo does not finish within ``seconds``.
     """
     outcome, problem = claim.outcome, claim.outcome.problem
     if outcome.units is None or outcome.costs is None or outcome.status is not Status.OPTIMAL:

@@ -17,8 +17,8 @@ class ClaimedAnswer(NamedTuple):
     ``outcome``: the answer.
     ``settings``: the settings under which the answer was found.
     ``soft``: the weight of each soft constraint.
-    ``penalty``: the claimed sum of the weights of the soft constraints that the tree of the outcome violates;
-    ``None`` without soft constraints.
+    ``penalty``: the claimed penalty of the tree: the sum of the weights of the soft constraints that it
+    violates; ``None`` without soft constraints.
     """
 
     outcome: Outcome
@@ -31,8 +31,7 @@ class EngineAnswer(NamedTuple):
     """The answer of an engine.
 
     ``engine``: the name of the engine.
-    ``objectives``: the objectives by which the engine optimized. They are the first ones of the question, at
-    least one.
+    ``objectives``: the first objectives of the question, at least one, by which the engine optimized.
     ``units``: the unit ids of a tree that the engine claims to be optimal by these objectives; ``None`` if it
     claims that no tree exists, or has not finished.
     ``finished``: false if the engine stopped before it had an answer.
@@ -45,7 +44,7 @@ class EngineAnswer(NamedTuple):
 
 
 class Solve(Protocol):
-    """The function of an engine, ours or that of another package (docs/entry-points.md)."""
+    """The interface of the function with which an engine solves a question (docs/entry-points.md)."""
 
     def __call__(
         self,
@@ -99,7 +98,7 @@ def difference_error(
     answer: EngineAnswer,
     more_is_better: bool = False,
 ) -> DisagreementError:
-    """Return the error that two trees, both claimed to be optimal, have different costs by ``measure``.
+    """Return the error for two trees that are both called optimal but differ in cost by ``measure``.
 
     ``ours`` and ``theirs`` are the costs of our tree and of the engine's tree. If the engine's tree is
     better, the error says that the bug is ours. The better cost is the smaller one or, with

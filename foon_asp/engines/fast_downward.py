@@ -82,8 +82,8 @@ def _task_text(problem: Problem, objective: Objective, forbidden: frozenset[int]
     """Return the planning task as text, in the format of Fast Downward's translator.
 
     Each node that has to be made is a binary variable, which is 0 once the node is available. If the
-    objective counts kitchen items, each item that units need is a variable, and an operator of cost 1 takes
-    it. Every other operator is a unit; a unit is left out if it makes no node that has to be made.
+    objective counts kitchen items, each needed item is a variable, too, and an operator of cost 1 takes it.
+    Every other operator is a unit. A unit is left out if it makes no node that has to be made.
 
     Raises :class:`NotCheckedError` if the costs add up to more than 32 bits hold.
     """

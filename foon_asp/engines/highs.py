@@ -31,9 +31,9 @@ def solve_with_highs(
     """Search for a lexicographically optimal tree, as :class:`Solve` does.
 
     Objectives are minimized one after the other, each with the more important ones fixed at their optimum. If
-    time runs out before the last is minimized, the answer has no tree and is not ``finished``. The answer is
-    the same if HiGHS finds a later objective infeasible, since this is an error of rounding. If all goals are
-    in the kitchen, the empty tree is returned at once.
+    time runs out before the last is minimized, the answer has no tree and is not ``finished``. Once one
+    objective is minimized, an infeasible program is an error of rounding, and the answer is not ``finished``
+    either. If all goals are in the kitchen, the empty tree is returned at once.
     """
     if not scope_of(problem, forbidden).goals:  # a program without variables; the empty tree is optimal
         return EngineAnswer(HIGHS, objectives, (), True)
@@ -123,7 +123,8 @@ class _Program:
     def _variable_costs(self, objective: Objective) -> list[tuple[Any, float]]:
         """Return pairs of a variable and its cost by an objective.
 
-        The variables are those that take items if the objective counts items, else those that use units.
+        If the objective counts kitchen items, the variables say which items are taken. Otherwise, they say
+        which units are used.
         """
         if objective.row.item:
             return [(variable, 1.0) for variable in self._take.values()]

@@ -49,8 +49,8 @@ def _validate_reply(
 ) -> EngineAnswer:
     """Return the answer in a reply of an engine.
 
-    Raises :class:`UserError` unless the reply has the form of an :class:`EngineAnswer`, names the first
-    objectives of the question, and has distinct ids as units.
+    A valid reply has the form of an :class:`EngineAnswer`, names the first objectives of the question, and
+    has distinct ids as units. Raises :class:`UserError` for any other reply.
 
     The name in the reply is ignored: the answer has the name of the offer.
     """

@@ -13,8 +13,8 @@ def relevant_given_landmarks(graph: GoalGraph, allowed: Container[int]) -> set[i
     preconditions are handled as goals. Every tree makes the effects of a landmark, so other achievers of
     these effects are redundant. So the backward search from the goals stops at effects of landmarks.
 
-    There is one exception. If a precondition of a landmark may be derived from an effect of this landmark,
-    the search does not stop at its effects.
+    There is one exception: a landmark that may help to derive its own preconditions. The search does not stop
+    at effects of such a landmark.
     """
     needs, gives, achievers = graph.needs, graph.gives, graph.makers
     goals = list(graph.goals)

@@ -38,7 +38,7 @@ class _Node:
     Actions are given as columns of the relaxation.
 
     ``bound``: a lower bound on the cost of the node's derivations, in parts: :data:`PARTS` is a cost of 1.
-    ``weights``: pairs of a row and its weight. Their cuts prove the bound.
+    ``weights``: pairs of a row and its weight. The cuts of the rows prove the bound.
     ``hopeless``: a cut with an empty landmark if the node has no derivation, else ``None``.
     ``above_cutoff``: actions whose derivations are no better than the incumbent. Both children forbid them.
     ``action``: the action branched on; ``None`` before branching.
@@ -164,22 +164,22 @@ class Branching:
         return self.effort <= 0 or expired()
 
     def _is_above_cutoff(self, bound: int) -> bool:
-        """Return whether no derivation whose cost is at least ``bound``, in parts, beats the incumbent."""
+        """Return whether a lower bound on costs, in parts, exceeds the greatest cost that is still wanted."""
         return bound > self._cutoff() * PARTS
 
     def _cutoff(self) -> int:
         """Return the greatest cost that a derivation better than the incumbent can have.
 
-        Without an incumbent, ``total`` takes the place of its cost. All costs are multiples of their common
-        divisor, and so is the cutoff.
+        Without an incumbent, ``total`` takes the place of its cost. The cutoff is a multiple of the common
+        divisor of all costs.
         """
         return (self._total - 1) // self._common_divisor * self._common_divisor
 
     def _set_bounds(self, node: _Node, targets: set[int]) -> None:
         """Set the bounds of columns and rows of the relaxation for a node.
 
-        Used actions are fixed at 1 and forbidden ones at 0. ``targets`` are the targets at this node. Rows of
-        cuts that contain none of them are made redundant.
+        Used actions are fixed at 1 and forbidden ones at 0. ``targets`` are the targets at this node. If a
+        cut contains no such target, its row is made redundant.
         """
         used, forbidden = self._relaxed_at
         for action in (used ^ node.used) | (forbidden ^ node.forbidden):
@@ -196,7 +196,7 @@ class Branching:
         """Solve the relaxation at a node in rounds of cuts, and close the node or give it two children.
 
         A node is closed if it is ``hopeless``, or if its bound is above the cutoff. If the node gets
-        children, both forbid the actions above the cutoff. Better derivations that are found become the
+        children, both forbid the actions above the cutoff. A better derivation that is found becomes the
         incumbent. Returns ``False`` if time or effort ran out first, else ``True``. Raises
         :class:`UnsolvedError` if HiGHS fails.
 
@@ -267,8 +267,8 @@ class Branching:
         """Round an LP solution to a derivation, record the derivation, and return its columns.
 
         The derivation has the used actions and those of LP value above 1/2, without forbidden actions. It
-        becomes the incumbent if it is better. If it does not reach all targets, a cut that it violates is
-        added to the relaxation, and the empty set is returned.
+        becomes the incumbent if it is better. If the actions do not reach all targets, the empty set is
+        returned. Then a cut that the actions do not cross is added to the relaxation.
         """
         chosen = node.used.union(self._np.flatnonzero(lp_values > 0.5).tolist()) - node.forbidden
         self.effort -= len(cutter.actions)
@@ -280,7 +280,10 @@ class Branching:
         return set(chosen)
 
     def _record_derivation(self, actions: set[int]) -> None:
-        """Make a derivation the incumbent if it costs less; without an incumbent, less than ``total``."""
+        """Make a derivation the incumbent if it costs less than the incumbent.
+
+        Without an incumbent, it has to cost less than ``total``.
+        """
         total = sum(self._costs[i] for i, a in enumerate(self._actions) if a in actions)
         if total < self._total:
             self._total, self.incumbent = total, frozenset(actions)
@@ -337,7 +340,7 @@ class Branching:
         return reduced_costs
 
     def _open_cuts(self, node: _Node) -> Iterator[tuple[int, int]]:
-        """Yield the row and the weight of each open cut of a node: its landmark has no used action."""
+        """Yield the row and the weight of each cut whose landmark has no used action of a node."""
         for row, weight in node.weights:
             if node.used.isdisjoint(self._relaxation.rows[row].tolist()):
                 yield row, weight
@@ -368,8 +371,8 @@ class Branching:
     def _packing_of(self, node: _Node) -> tuple[Packing, set[int]]:
         """Return the cost partition of a node, and the columns of forbidden actions that it overloads.
 
-        The weights on an overloaded action add up to more than its cost. Raises :class:`TooLongError` if the
-        proof as a whole becomes too long, or time is up.
+        An action is overloaded if the weights of the cuts that it crosses add up to more than its cost.
+        Raises :class:`TooLongError` if the proof as a whole becomes too long, or time is up.
         """
         weights: list[tuple[Cut, tuple[Fraction]]] = []
         self._length_budget -= 5000  # which limits the depth of the branching, too
@@ -385,7 +388,7 @@ class Branching:
     def _cut_in_whole_graph(self, cut: frozenset[int], node: _Node) -> Cut:
         """Return a cut of the subgraph in numbers of the whole graph.
 
-        Its landmark lacks the actions that the node forbids.
+        The landmark of the result lacks the actions that the node forbids.
         """
         crossing = (self._actions[a] for a in self._relaxation.landmark_of(cut) if a not in node.forbidden)
         return Cut(tuple(sorted(self._relaxation.whole_cut(cut))), tuple(sorted(crossing)))
@@ -405,8 +408,8 @@ def prove_by_branching(
     Arguments are those of :class:`Branching`; ``expired`` returns whether time is up. Costs are whole
     numbers, so it suffices that bounds of the proof exceed ``total - 1``.
 
-    Also returns ``None`` if a derivation costs less, an action costs nothing, the costs have a common divisor
-    above 1, or the proof becomes too long.
+    Also returns ``None`` if a derivation costs less, or the proof becomes too long. Costs of 0, and costs
+    with a common divisor above 1, are not supported: the result is ``None``.
     """
     costs = [cost(action) for action in actions]
     if math.gcd(*costs) != 1 or 0 in costs:

@@ -97,9 +97,9 @@ class CostPartitioning:
     def advance(self, sufficient_bound: int, max_solutions: float = math.inf) -> CostPartition | None:
         """Solve the LP and add violated cuts in turn; return the cost partition of the last solution.
 
-        Ends when the bound reaches ``sufficient_bound``, when no cut is violated or the bound has stalled, or
-        when time is up. Then :attr:`converged` becomes true. Also ends after ``max_solutions`` solutions; the
-        next call continues from there.
+        Sets :attr:`converged` and ends in four cases: the bound reaches ``sufficient_bound``, no cut is
+        violated, the bound hardly grows, or time is up. Also ends after ``max_solutions`` solutions. The next
+        call then continues from there.
 
         Returns ``None`` if the targets cannot be reached or are all initial, or HiGHS never had a solution.
         """
@@ -171,9 +171,9 @@ class CostPartitioning:
     def _make_cutters(self, graph: Hypergraph) -> tuple[list[Cutter], list[Cutter]]:
         """Return a list of cutters for one target each, and a list with one cutter for all other targets.
 
-        A target has its own cutter if at most half of the actions are relevant to it. A single target has no
-        cutter of its own, nor has any target once a budget of effort is used up. If there are no other
-        targets, the second list is empty.
+        A target has its own cutter if at most half of the actions are relevant to it. Once a budget of effort
+        is used up, no more targets get a cutter of their own. If there is only one target, the first list is
+        empty. If each target has its own cutter, the second list is empty.
         """
         count, targets = len(self._relaxation.actions), self._cutter.targets
         single_target_cutters: list[Cutter] = []

@@ -51,7 +51,9 @@ class BasicSolution(NamedTuple):
 class LpSolution(NamedTuple):
     """An optimal solution, basic or not.
 
-    ``value`` is its cost, ``x`` are the values of the columns, and ``duals`` those of the rows.
+    ``value``: the cost of the solution.
+    ``x``: the value of each column.
+    ``duals``: the dual of each row.
     """
 
     value: float
@@ -62,10 +64,10 @@ class LpSolution(NamedTuple):
 class Covering:
     """A covering problem: minimize the sum of ``costs[c] * x[c]`` over all columns ``c``.
 
-    No ``x[c]`` is below 0. There are two kinds of rows. By a covering row, the values of some columns add up
-    to at least 1. By a limit, the sum of ``amounts[c] * x[c]`` is at most ``max_amount``. Rows are numbered
-    from 0 as they are added. They can be added between solutions. HiGHS then continues from the last
-    solution.
+    No ``x[c]`` is below 0. There are two kinds of rows. A covering row requires that the values of some
+    columns add up to at least 1. A limit requires that the sum of ``amounts[c] * x[c]`` is at most
+    ``max_amount``. Rows are numbered from 0 as they are added. They can be added between solutions. HiGHS
+    then continues from the last solution.
     """
 
     def __init__(self, costs: Sequence[float]) -> None:
@@ -98,7 +100,10 @@ class Covering:
         self._highs.changeColBounds(column, lower, upper)
 
     def set_row_minimum(self, row: int, lower: float) -> None:
-        """Set the least sum of the values in a covering row, at first 1; with 0, the row is redundant."""
+        """Set the least sum of the values in a covering row, which is 1 at first.
+
+        With 0, the row is redundant.
+        """
         self._highs.changeRowBounds(row, lower, self._library.kHighsInf)
 
     def _set_options(self, options: dict[str, bool | str | float]) -> None:

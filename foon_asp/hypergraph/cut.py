@@ -32,7 +32,7 @@ class Cutter:
     ``targets``: the targets that are not initial.
     ``actions``: the relevant actions. They can run and lead to a target.
     ``hopeless``: a cut with an empty landmark if a target cannot be reached, else ``None``. If there is such
-    a cut, ``actions`` is empty, and of the methods only :meth:`widen` may be called.
+    a cut, ``actions`` is empty, and :meth:`widen` is the only method that may be called.
 
     Landmarks contain every crossing action that is not forbidden.
 
@@ -202,10 +202,10 @@ class _Growth:
         self._targets = len(cutter.targets)
 
     def reaches_targets_with(self, actions: Iterable[int]) -> bool:
-        """Admit actions up to the first with which all targets would be reached; that one is refused.
+        """Admit actions one by one; return whether some action was refused.
 
-        Return whether there was one. Also return ``True`` if there are no targets. After ``True``, this
-        object must not be used any more.
+        An action is refused if all targets would be reached with it. Ends at the first such action. Also
+        returns ``True`` if there are no targets. After ``True``, this object must not be used any more.
         """
         return not self._unreached or bool(self.admit(actions, max_refused=1))
 
@@ -241,9 +241,9 @@ class _Growth:
         return refused
 
     def _record_decisive(self, refused: list[int]) -> None:
-        """Record the first of the ``refused`` objects that alone suffices to reach all targets as decisive.
+        """Record the first of the ``refused`` objects that alone suffices to reach all targets.
 
-        If no object alone suffices, nothing changes.
+        The object is recorded as decisive. If no object alone suffices, nothing changes.
         """
         for o in refused:
             unreached = self._unreached
@@ -255,9 +255,10 @@ class _Growth:
             self._unreached = unreached
 
     def _reach_from(self, objects: list[int]) -> list[int] | None:
-        """Mark some objects as reached, and all that admitted actions then make; return the new ones.
+        """Mark objects as reached, and the objects that admitted actions then make; return all marked ones.
 
-        If all targets would be reached, nothing changes, and the result is ``None``.
+        Objects that were reached before are left out. If all targets would be reached, nothing changes, and
+        the result is ``None``.
         """
         waiting, missing, reached = self._waiting, self._missing, self.reached
         consumers, gives, decisive, targets = self._consumers, self._gives, self._decisive, self._targets

@@ -10,10 +10,10 @@ def undominated_actions(graph: GoalGraph, actions: Collection[int], cost: Callab
     """Return the actions that no other action dominates.
 
     Action A dominates action B if three things hold. The preconditions of A are a subset of B's, A has all
-    effects of B, and A costs no more. Then A can replace B in any tree, and the tree costs no more, since
-    ``cost`` covers the whole list of objectives. Initial objects do not count as preconditions. Effects that
-    no action or goal needs do not count; an action with no other effects is left out of the result. If
-    actions dominate each other, one of them stays.
+    effects of B, and A costs no more. Then A can replace B in any tree, and the tree costs no more. For this,
+    ``cost`` has to cover the whole list of objectives. Initial objects do not count as preconditions. Effects
+    that no action or goal needs do not count. An action without effects that count is left out of the result.
+    If actions dominate each other, one of them stays.
     """
     start = graph.start
     needed = {a: frozenset(o for o in graph.needs[a] if o not in start) for a in actions}

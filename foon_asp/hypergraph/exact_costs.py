@@ -26,11 +26,12 @@ class ExactCosts:
     """The cost of each action as one integer; sums of costs compare lexicographically.
 
     Call the object with an action for its cost. The cost by an additive objective is scaled to an integer.
-    Then it is multiplied by more than the greatest sum of the objectives after it.
+    Then it is multiplied by a number greater than any sum of costs by the less important objectives.
 
-    Where rates multiply, logarithms are added. Each factor of a coprime base of the rates has a logarithm
-    rounded to forty digits, so equal products have equal sums. The attribute ``doubt`` is greater than the
-    sum of all rounding errors: sums that differ by more compare exactly. It is 0 if nothing is rounded.
+    Where rates multiply, logarithms are added. The rates are products of the factors of a coprime base, whose
+    logarithms are rounded to forty digits. So equal products have equal sums. The attribute ``doubt`` is
+    greater than the sum of all rounding errors: sums that differ by more compare exactly. It is 0 if nothing
+    is rounded.
 
     Raises :class:`TooFineError` if a rate is 0 or has a denominator above 10^9.
     """
@@ -61,8 +62,8 @@ class ExactCosts:
         """Return these costs with ``price * counts(unit)`` added to the cost of each unit.
 
         If the price is a fraction, all costs are multiplied by its denominator. Actions that take kitchen
-        items have no price. With a ``limit``, a search by these costs ends early: as soon as a lower bound
-        reaches the limit, or a tree costs less.
+        items have no price. With a ``limit``, a search by these costs ends early: when a lower bound reaches
+        the limit, or a tree costs less than it.
         """
         units, costs = self._units, copy(self)
         numerator, costs._multiplier = Fraction(price).as_integer_ratio()
@@ -133,10 +134,10 @@ class ExactCosts:
     def proves_optimal(self, cuts: Cuts, tree: Collection[int]) -> bool:
         """Return whether a cost partition proves this tree optimal, exactly.
 
-        If these costs have a limit, return instead whether the bound reaches the limit or the tree costs less
-        than it. If nothing is rounded, the bound is compared with the cost of the tree. Otherwise weights and
-        reduced costs are recomputed exactly, as vectors of exponents of rates. The weight of each cut is then
-        the reduced cost of its cheapest action.
+        If these costs have a limit, return whether the bound reaches the limit, or the tree costs less than
+        the limit. If nothing is rounded, the bound is compared with the cost of the tree. Otherwise weights
+        and reduced costs are recomputed exactly, as vectors of exponents of rates. The weight of each cut is
+        then the reduced cost of its cheapest action.
 
         Return ``False`` if these vectors become too large, or if costs are rounded and have a price.
         """
@@ -195,11 +196,11 @@ class ExactCosts:
         return [(objective, self._scaled_cost(objective, action)) for objective in self._objectives]
 
     def unscale(self, objective: Objective, figure: int) -> int | Fraction:
-        """Return a sum of scaled costs by an additive objective, ``figure``, in the unit of the objective."""
+        """Return ``figure``, a sum of scaled costs by an additive objective, in the unit of the objective."""
         return figure if objective.row.whole else Fraction(figure, self._denominators[objective])
 
     def is_logarithm(self, figure: int, product: Fraction) -> bool:
-        """Return whether a sum of rounded logarithms, ``figure``, is ``-log(product)`` up to rounding."""
+        """Return whether ``figure``, a sum of rounded logarithms, is ``-log(product)`` up to rounding."""
         return abs(figure - _logarithm(product.denominator) + _logarithm(product.numerator)) < _ROUNDED
 
     def rate(self, action: int) -> Fraction:
@@ -292,8 +293,8 @@ def _coarse_logarithm(rate: Fraction) -> int:
 def _scaled_logarithms(rates: set[Fraction]) -> dict[Fraction, int]:
     """Return for each rate ``-ln(rate)``, multiplied by ``10**40`` and rounded.
 
-    It is a sum of rounded logarithms of the factors of a coprime base, so equal products of rates have equal
-    sums. Raises :class:`TooFineError` if a rate is 0 or has a denominator above 10^9.
+    The logarithms of the factors of a coprime base are rounded and added up. So equal products of rates have
+    equal sums. Raises :class:`TooFineError` if a rate is 0 or has a denominator above 10^9.
     """
     # logarithms at this scale distinguish rates up to such denominators for sure
     if not all(0 < rate <= 1 and rate.denominator <= 10**9 for rate in rates):

@@ -14,12 +14,12 @@ Limit = tuple[Mapping[int, Fraction], Fraction]
 
 
 class ExactOptimum(NamedTuple):
-    """The optimum of a covering problem, without zeros.
+    """The optimum of a covering problem. Values and duals of 0 are left out.
 
     ``x``: the value of each column that is not 0.
     ``duals``: the dual of each row that is not 0.
-    ``value``: the cost of the solution. By duality, it equals the sum of the duals of the covering rows,
-    minus the dual of each limit times its amount.
+    ``value``: the cost of the solution. By duality, it equals the sum of the duals of covering rows, minus
+    for each limit its dual times its amount.
     """
 
     x: dict[int, Fraction]
@@ -45,8 +45,8 @@ def exact_optimum(
     ``costs``: the cost of each column, none below 0.
     ``order``: the order of the costs.
     ``columns``, ``tight``: the first basis, as numbers of columns and of equally many tight rows.
-    ``limits``: pairs of two values: the amount that each column consumes, and the amount available. As rows,
-    limits are numbered before ``rows``.
+    ``limits``: for each limit, a pair: the amounts that columns consume, by column, and the amount available.
+    As rows, limits are numbered before ``rows``.
 
     Each step solves the basis anew, and Bland's rule prevents cycling. Returns ``None`` after
     ``tuning.PROOF.pivots`` steps, or if a basis is singular or infeasible.

@@ -20,9 +20,10 @@ def extend_tree(
 ) -> set[int] | None:
     """Return the actions of a tree for the goals, together with the actions of an extension.
 
-    The extension follows h_add; actions of the tree cost nothing in it. It is looked for among the actions
-    nearest to the required sets, and then in a restricted subproblem of at most ``max_actions`` actions. The
-    result may have redundant actions. Returns ``None`` if no extension is found.
+    The extension gives the tree a unit of each required set. It follows h_add, where actions of the tree cost
+    nothing. It is first looked for among the actions nearest to the required sets. Then it is looked for in a
+    restricted subproblem of at most ``max_actions`` actions. The result may have redundant actions. Returns
+    ``None`` if no extension is found.
     """
     required_graph = _graph_of_required(graph)
     remaining_cost = _cost_without(tree, cost)
@@ -50,9 +51,10 @@ def actions_of_extensions(
 ) -> set[int]:
     """Return a superset of the actions of all extensions that cost up to ``limit``.
 
-    An action is excluded if its derivation and its path to a required set together cost more. All actions on
-    the path belong to the extension, so they count in full. In the derivation, ``free`` actions cost nothing.
-    If time is up, the superset is larger.
+    An extension has the actions that have to be added to a tree of ``free`` actions so that the tree has a
+    unit of each required set. An action is excluded if its derivation and its path to a required set together
+    cost more than ``limit``. In the derivation, ``free`` actions cost nothing. On the path, they count in
+    full. If time is up, the superset is larger.
     """
     required_graph, remaining_cost = _graph_of_required(graph), _cost_without(free, cost)
     all_actions = range(len(graph.needs))

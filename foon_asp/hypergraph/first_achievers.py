@@ -16,11 +16,11 @@ _STEPS = 1000  # actions processed between two looks at the time
 
 
 class FirstAchievers:
-    """A graph without the add effects that an action never achieves first, computed at construction.
+    """A graph without the add effects that their action never achieves first.
 
-    The attribute ``graph`` is this graph. All actions of the graph that is passed have to be able to run. In
-    a large graph, only landmarks among the first objects are computed, so fewer add effects are removed. If
-    time is up, none is removed.
+    It is computed at construction, and is the attribute ``graph``. All actions of the given graph have to be
+    able to run. In a large graph, only landmarks among the first objects are computed, so fewer add effects
+    are removed. If time is up, none is removed.
     """
 
     def __init__(self, graph: Hypergraph, expired: Callable[[], bool] = lambda: False) -> None:
@@ -53,7 +53,8 @@ class FirstAchievers:
         """Return the landmark of a cut of :attr:`graph`, ascending.
 
         It consists of the actions that cross the cut in this graph. An action is left out if an object of the
-        cut is a landmark of its preconditions: it cannot be the first to achieve an object of the cut.
+        cut is a landmark of its preconditions. Such an action cannot be the first to achieve an object of the
+        cut.
         """
         achievers, needs, before = self.graph.makers, self.graph.needs, self._landmarks_before
         inside = _bit_set(cut)
@@ -87,11 +88,12 @@ def _bit_set(objects: Iterable[int]) -> int:
 
 
 def _object_landmarks(graph: Hypergraph, tracked_count: int, expired: Callable[[], bool]) -> list[int]:
-    """Return the landmarks of each object, as a bit set; only the first ``tracked_count`` objects are in it.
+    """Return for each object the bit set of its landmarks among the first ``tracked_count`` objects.
 
-    It is a greatest fixpoint (Keyder, Richter and Helmert 2010). The landmarks of an object are the object
-    itself and the landmarks that all its achievers share. The landmarks of an achiever are those of its
-    preconditions. Initial and unreachable objects have empty bit sets. If time is up, all bit sets are empty.
+    The bit sets are a greatest fixpoint (Keyder, Richter and Helmert 2010). The landmarks of an object are
+    the object itself and the landmarks that all its achievers share. The landmarks of an achiever are those
+    of its preconditions. Initial and unreachable objects have empty bit sets. If time is up, all bit sets are
+    empty.
     """
     own = [1 << o if o < tracked_count else 0 for o in range(graph.size)]
     landmarks: list[int | None] = [None] * graph.size

@@ -30,9 +30,9 @@ class Subproblem:
     redundant: bool
 
     def landmarks(self) -> list[frozenset[int]]:
-        """Return disjunctive landmarks, as sets of unit ids: those of the cuts, and the required sets.
+        """Return disjunctive landmarks, as sets of unit ids: landmarks of the cuts, then the required sets.
 
-        Landmarks of cuts with an action that takes a kitchen item are left out.
+        A landmark is left out if it has an action that takes a kitchen item.
         """
         graph, restriction = self.graph, self.problem.restriction
         landmarks = [frozenset(cut.members) for cut in self.cuts.cuts if max(cut.members) < graph.units]
@@ -42,7 +42,10 @@ class Subproblem:
         return landmarks
 
     def achievers_for(self, units: Iterable[int]) -> set[int]:
-        """Return the achievers of the goals and of the preconditions of some units, except kitchen items."""
+        """Return the achievers of the goals and of some units' preconditions.
+
+        Kitchen items among the preconditions are skipped.
+        """
         graph, kitchen = self.graph, self.problem.kitchen
         needed = {o for unit in units for o in graph.needs[unit] if o not in kitchen}
         return {achiever for o in needed.union(graph.goals) for achiever in graph.makers[o]}
@@ -66,9 +69,10 @@ class Subproblem:
         return {unit for unit in units if restriction is None or not restriction.removed(unit)}
 
     def with_only_achievers(self, units: Iterable[int], max_units: int) -> set[int]:
-        """Return these units, and each unit that is the only achiever of a precondition of a returned unit.
+        """Return these units together with the units without which they cannot be executed.
 
-        Kitchen items do not count as preconditions. Stops at about ``max_units`` units.
+        If a precondition has only one achiever, this achiever is added, and its preconditions are looked at
+        as well. Kitchen items do not count as preconditions. Stops at about ``max_units`` units.
         """
         graph, kitchen = self.graph, self.problem.kitchen
         closed, waiting = set(units), list(units)
@@ -88,8 +92,8 @@ class Subproblem:
     def tree_actions(self, units: Iterable[int]) -> set[int]:
         """Return the actions of the tree with ``units``.
 
-        They are the units themselves and, if an objective counts kitchen items, the actions that take the
-        items that the units need.
+        They are the units themselves. If an objective counts kitchen items, the actions that take the needed
+        items are added.
         """
         tree = set(units)
         if self.graph.start:
@@ -98,7 +102,7 @@ class Subproblem:
         return tree | {self.graph.units + o for o in needed & self.problem.kitchen}
 
     def nearest_units(self, min_units: int) -> frozenset[int]:
-        """Return the units among the ``remaining`` actions nearest to the goals by reduced cost.
+        """Return units among the ``remaining`` actions: those nearest to the goals by reduced cost.
 
         The search ends when ``min_units`` actions are found. These may include actions that take kitchen
         items.
@@ -116,7 +120,8 @@ class Subproblem:
     def all_units(self) -> frozenset[int]:
         """Return all units that a tree of any cost can have.
 
-        They are the units that can run. Unless trees may be redundant, they also have to lead to a goal.
+        They are the units that can run. If trees may not be redundant, units that lead to no goal are left
+        out.
         """
         if self.redundant:
             return self._units(self._runnable_actions(self._all_actions()))
@@ -132,9 +137,9 @@ class Subproblem:
         """Return a superset of the actions of trees that cost up to ``limit``.
 
         Let the gap be ``limit`` minus the bound of the cuts. The reduced costs of such a tree add up to at
-        most the gap. So an action is excluded if its derivation has a greater reduced cost. Unless trees may
-        be redundant, the path from the action to a goal is added to the derivation. Then new cuts are found
-        among the remaining actions, as long as many are excluded. If time is up, the superset is larger. The
+        most the gap. So an action is excluded if its derivation has a greater reduced cost. If trees may not
+        be redundant, the path from the action to a goal is added to the derivation. As long as many actions
+        are excluded, new cuts are found over the remaining ones. If time is up, the superset is larger. The
         result is empty if cuts prove that there is no such tree.
 
         Raises ``KeyboardInterrupt`` if the search for cuts is interrupted.

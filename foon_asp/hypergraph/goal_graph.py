@@ -15,8 +15,8 @@ class GoalGraph(Hypergraph):
     ``units``: the number of units. Action ``a`` below it is the unit with the id ``a``.
     ``goals``: the goals that are not initial.
     ``start``: the kitchen. Add effects may be initial objects.
-    ``required``: the additional objects of required sets. A tree has a unit of each set. So the object of a
-    set is a goal, and each unit of the set achieves it.
+    ``required``: additional objects, one for each required set. A tree has a unit of each set. So the object
+    of a set is a goal, and each unit of the set achieves it.
 
     If an objective counts the items taken from the kitchen, ``start`` is empty. Then action ``units + o``
     takes item ``o``: it has no preconditions and the effect ``o``.
@@ -56,8 +56,8 @@ class GoalGraph(Hypergraph):
 def graph_of(problem: Problem, objectives: Iterable[Objective]) -> GoalGraph:
     """Return the graph of a problem under a list of objectives.
 
-    It has actions that take kitchen items only if an objective counts these. Goals in the kitchen are left
-    out. If an objective counts kitchen items, a unit that makes such an item has no such add effect.
+    Goals in the kitchen are left out. If an objective counts kitchen items, the graph has an action for
+    taking each item. Then units have no kitchen items among their add effects.
     """
     network, kitchen, restriction = problem.network, problem.kitchen, problem.restriction
     units, size = len(network), len(network.objects)

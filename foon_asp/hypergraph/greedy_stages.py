@@ -29,8 +29,9 @@ def raise_bound(task: Task, gap: Gap, h_values: Mapping[int, int], guide: Guide 
     """Find landmark cuts over the candidates, which have to contain a tree, and raise the lower bound.
 
     ``h_values`` and ``guide`` are those of :func:`landmark_cuts`. The bound is raised at most to the cost of
-    the incumbent. In the evidence, the cuts become ``first`` if there were none before, and ``cuts`` if no
-    earlier bound is as great. If ctrl-C interrupts the search, the cuts found so far are returned.
+    the incumbent. The cuts become ``first`` of the evidence if it has no first cuts yet. They become its
+    ``cuts`` if no earlier bound is as great. If ctrl-C interrupts the search, the cuts found so far are
+    returned.
     """
     costs = task.costs
     assert costs is not None
@@ -111,7 +112,7 @@ def search_neighbourhood(task: Task, gap: Gap, cuts: Cuts, thorough: bool) -> Ga
 def search_repeatedly(task: Task, gap: Gap) -> Stage:
     """Search the neighbourhood thoroughly, again and again, until the incumbent stays as it is.
 
-    Also ends when time is up, or as many actions were looked at as branching may. Yields the gap after each
+    Also ends when time is up, or when ``branching_budget`` actions were looked at. Yields the gap after each
     search.
     """
     budget, previous = task.tuning.branching_budget, frozenset[int]()
@@ -138,7 +139,7 @@ def follow_h_add(task: Task, gap: Gap) -> Gap:
 
 
 def fix_candidates(task: Task, gap: Gap, cuts: Cuts) -> Gap:
-    """Return the gap without the candidates that the reduced costs of cuts put above the cutoff."""
+    """Return the gap without the candidates that reduced-cost fixing by cuts excludes."""
     assert task.costs is not None
     reduced_cost, distance = reduced_costs_of(task.costs, cuts), task.cutoff(gap) - cuts.bound
     return gap.with_candidates(

@@ -39,8 +39,8 @@ def compute_h_values(
 
     The h-value of an object is that of its best achiever: the cost of the achiever plus the h-value of its
     preconditions. With ``h_add``, the h-values of the preconditions are added, so shared actions count more
-    than once. Otherwise, their maximum is taken (h_max), and no derivation costs less (Bonet and Geffner
-    2001). The algorithm is Dijkstra's, generalized, with a bucket for each h-value.
+    than once. Otherwise, their maximum is taken (h_max). Then no derivation costs less than the h-value
+    (Bonet and Geffner 2001). The algorithm is Dijkstra's, generalized, with a bucket for each h-value.
     """
     price = cost.__getitem__ if isinstance(cost, Mapping) else cost
     needs, gives, start = graph.needs, graph.gives, graph.start

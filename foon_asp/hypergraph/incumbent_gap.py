@@ -42,12 +42,12 @@ NO_EVIDENCE = Evidence()
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Gap:
-    """The state of a question between two stages; each stage makes a smaller gap of it.
+    """The state of a question between two stages. Each stage turns it into a smaller gap.
 
     ``incumbent``: the actions of the best tree so far.
     ``lower_bound``: a lower bound on the cost of every tree, in the units of :class:`ExactCosts`.
-    ``candidates``: the actions that better trees can have. If equally good trees are wanted, their actions
-    are candidates as well.
+    ``candidates``: the actions that better trees can have. If equally good trees are wanted, the actions of
+    such trees are candidates as well.
     ``budget``: the number of actions that branch and bound may still look at.
     ``proved``: whether the incumbent is proved optimal.
     ``evidence``: the cuts that prove the lower bound.

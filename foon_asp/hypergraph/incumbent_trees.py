@@ -15,8 +15,9 @@ if TYPE_CHECKING:  # few questions need it
 def irredundant_subset(graph: GoalGraph, tree: Collection[int], cost: Callable[[int], int]) -> set[int]:
     """Return an irredundant subset of a tree, by removing redundant actions, expensive ones first.
 
-    All actions of the tree have to be able to run, and together they have to reach the goals. Actions that
-    best achievers by h_add do not use are removed first, all at once.
+    All actions of the tree have to be able to run, and together they have to reach the goals. Best achievers
+    by h_add are followed from the goals. Actions that are not reached in this way are removed first, all at
+    once.
     """
     support = Support(graph, tree, cost)
     waiting = [(-cost(action), action) for action in support.actions]
@@ -42,14 +43,14 @@ def trees_by_lp_values(
 ) -> Iterator[set[int]]:
     """Yield an irredundant tree that follows h_add and one that follows h_max, both guided by LP values.
 
-    For the h-values, the cost of an action is multiplied by 1 minus its LP value. Each action has to have
-    one, unless it is in ``without``. The trees have no action of ``without``. Yields nothing if there is no
-    such tree.
+    For the h-values, the cost of an action is multiplied by 1 minus its LP value. Each action except those in
+    ``without`` has to have an LP value. The trees have no action of ``without``. Yields nothing if there is
+    no such tree.
     """
     allowed = [a for a in actions if a not in without]
 
     def price_by_lp_value(action: int) -> int:
-        """Return about 1000 times the cost of an action times 1 minus its LP value."""
+        """Return about ``1000 * cost * (1 - LP value)`` for an action."""
         return 1 + _scaled_cost(cost(action), 1 - min(1.0, lp_values[action]))
 
     for h_add in (True, False):
@@ -69,13 +70,14 @@ def _scaled_cost(cost: int, share: float) -> int:
 def trees_by_partition(
     graph: GoalGraph, actions: Collection[int], cost: Callable[[int], int], partition: "CostPartition"
 ) -> Iterator[set[int]]:
-    """Yield up to four irredundant trees that follow an LP solution: by h_add and by h_max, at two prices.
+    """Yield up to four irredundant trees that follow an LP solution.
 
-    One price is the cost times 1 minus the LP value, the other is about the reduced cost.
+    They follow h_add or h_max, at one of two prices. The first price of an action is its cost times 1 minus
+    its LP value. The second is about its reduced cost.
     """
 
     def price_by_lp_value(action: int) -> int:
-        """Return about 1000 times the cost of an action times 1 minus its LP value."""
+        """Return about ``1000 * cost * (1 - LP value)`` for an action."""
         return 1 + _scaled_cost(cost(action), 1 - min(1.0, partition.lp_values[action]))
 
     def price_by_reduced_cost(action: int) -> int:
@@ -104,7 +106,7 @@ def perturbation_search(
 
     Each round derives an irredundant tree by h_add or h_max at perturbed costs: each cost is multiplied by a
     random factor from 0.5 to 1.5. In half of the rounds, costs are also multiplied by 1 minus the LP values.
-    In the other half, a random part of the current tree costs nothing, and sometimes only a random part of
+    In the other half, a random part of the current tree costs nothing. In some of them, only a random part of
     the other actions is allowed. A tree that costs no more than the current tree replaces it.
 
     ``random_number`` returns numbers from 0 to 1. Ends when a tree costs at most ``sufficient_cost``, or time

@@ -64,10 +64,11 @@ class Cuts(NamedTuple):
 
 
 class _Level:
-    """Some objects that every derivation of a target makes, and the goal zone of the last of them.
+    """Some objects that every derivation of a target makes. The last of them has a goal zone.
 
-    ``zone``: the objects of the goal zone; empty until it is grown.
-    ``frontier``: the actions of reduced cost above 0 that achieve an object of the zone, as keys.
+    ``zone``: the goal zone, a set of objects that grows backwards through actions of reduced cost 0. It is
+    empty at first.
+    ``frontier``: the actions of reduced cost above 0 that achieve an object of the zone, as keys of a dict.
     ``earlier_cut``: the latest cut of the level below; ``None`` for the lowest level.
     ``cut``: the latest cut of this zone. Before the first one, it is ``earlier_cut``.
     """
@@ -85,7 +86,7 @@ class _Level:
 
 
 class _Target:
-    """A target with a stack of levels, of which the lowest has the target alone.
+    """A target with a stack of levels. The lowest level has only the target.
 
     Objects of a level are made before objects of the level below. ``outer_zones`` are the objects in the
     zones of all levels except the topmost.
@@ -98,8 +99,8 @@ class _Target:
     def top_level(self, free: Container[int]) -> _Level | None:
         """Return the topmost level whose last object is not free; ``None`` if the target itself is free.
 
-        An object is free if it can be made at reduced cost 0. Levels above that have only free objects are
-        removed, and so are free objects at the end of a level.
+        An object is free if it can be made at reduced cost 0. Higher levels, which have only free objects,
+        are removed from the stack. Free objects at the end of a level are removed as well.
         """
         while self.levels:
             level = self.levels[-1]
@@ -147,8 +148,7 @@ def landmark_cuts(
     ctrl-C, nothing is raised, and the result is ``interrupted``.
 
     Targets take turns, beginning with the greatest h-value. So the cuts of one target do not use up the costs
-    that others need. The set of objects of reduced cost 0 only grows, so the time is linear in the parts of
-    the graph that cuts touch.
+    that other targets need. The time is linear in the parts of the graph that cuts touch.
     """
     search = _Search(graph, allowed, cost, h_values)
     queue = deque(_Target(o) for o in sorted(targets, key=search.h_value_key, reverse=True))
@@ -210,7 +210,7 @@ class _Search:
         """Find the next cut of a level, record it, and subtract its weight from reduced costs; return it.
 
         Return ``None`` if no action crosses the zone, so that the target cannot be reached. ``outer_zones``
-        are those of the :class:`_Target`.
+        are explained at :class:`_Target`.
         """
         new_objects = self._grow_zone(level, outer_zones)
         while new_objects is None:

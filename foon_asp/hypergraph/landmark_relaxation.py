@@ -60,7 +60,10 @@ class LandmarkRelaxation:
         self._whole_cuts: dict[frozenset[int], frozenset[int]] = {}
 
     def add_cut(self, cut: frozenset[int]) -> None:
-        """Add a row for a cut, given by objects of the subgraph: its columns are the landmark actions."""
+        """Add a row for a cut of the subgraph, given by its objects.
+
+        The columns of the row are the actions of the landmark.
+        """
         self.rows.append(self._np.array(self.landmark_of(cut), dtype=self._np.int32))
         self.cuts.append(cut)
         self.covering.add_row(self.rows[-1])
@@ -97,9 +100,9 @@ class LandmarkRelaxation:
     ) -> tuple[int, int]:
         """Add cuts that an LP solution violates; return the numbers of cuts added and of actions looked at.
 
-        ``cutters`` are asked one after the other. Landmarks are disjoint, and have no action of ``used``.
-        ``lp_values`` is an array of the LP value of each action. It is changed in place. Ends when no cut is
-        left, ``budget`` actions were looked at, or ``stopped`` returns true.
+        ``cutters`` are asked one after the other. The landmarks of the added cuts are disjoint, and have no
+        action of ``used``. ``lp_values`` is an array of the LP value of each action. It is changed in place.
+        Ends when no cut is left, ``budget`` actions were looked at, or ``stopped`` returns true.
         """
         added = looks = 0
         for cutter in cutters:
@@ -125,9 +128,9 @@ class LandmarkRelaxation:
         """Return for each row a feasible weight, in parts: its dual, rounded and limited by ``capacity``.
 
         ``dual_values`` are pairs of a row and its dual. Negative and infinite duals count as 0. ``capacity``
-        is an array of the cost of each action, in parts. Weights are subtracted from it in place, so that
-        reduced costs remain in it. If costs remain on all actions of a landmark, its weight is then raised.
-        The weights add up to a lower bound, whatever the duals are.
+        is an array of the cost of each action, in parts. Weights are subtracted from the array in place, so
+        it has the reduced costs at the end. If costs remain on all actions of a landmark, the weight of its
+        row is raised. The weights add up to a lower bound, whatever the duals are.
         """
         scale = self.greatest_cost * PARTS
         rounded_duals = {row: round(Fraction(w) * scale) if 0 < w < math.inf else 0 for row, w in dual_values}
@@ -146,10 +149,10 @@ class LandmarkRelaxation:
 def _subgraph(
     graph: Hypergraph, targets: Iterable[int], actions: Sequence[int]
 ) -> tuple[Hypergraph, list[int], list[int]]:
-    """Return the graph of the given actions, and for each of its objects the number in the whole graph.
+    """Return the graph of the given actions, the old number of each of its objects, and its targets.
 
-    The third value is the list of the targets in the new graph. The objects of the new graph are the targets
-    and the non-initial preconditions of the actions, and none of them is initial.
+    The old numbers are those in the whole graph, and the targets have their new numbers. The objects of the
+    new graph are the targets and the non-initial preconditions of the actions. No object of it is initial.
     """
     targets, start = tuple(targets), graph.start
     objects = sorted({o for a in actions for o in graph.needs[a] if o not in start}.union(targets))

@@ -12,11 +12,11 @@ def lazy_h_max_test(
 ) -> Callable[[int, float], bool]:
     """Return a function that tests whether the h_max of an object is at most a limit.
 
-    The h_max is that of ``allowed`` actions at their reduced costs. :func:`compute_h_values` computes h_max
-    of all objects at once. The returned function goes backwards from one object instead, and prunes by the
-    limit. With a low limit, it looks at a small part of a large network. It returns ``True`` without proof if
-    it would go too deep or take too long. It keeps bounds between calls. Initial objects are within any
-    limit.
+    h_max is computed over the ``allowed`` actions at their reduced costs. :func:`compute_h_values` computes
+    h_max of all objects at once. The returned function goes backwards from one object instead, and prunes by
+    the limit. With a low limit, it looks at a small part of a large network. It returns ``True`` without
+    proof if it would go too deep or take too long. Bounds on h_max that one call finds are kept for later
+    calls. Initial objects are within any limit.
     """
     needs, achievers, start = graph.needs, graph.makers, graph.start
     lower_bounds: dict[int, float] = {}  # on the h_max of objects

@@ -23,8 +23,8 @@ _DIGITS = 60  # of a logarithm, at first
 class Lexicographic:
     """An order on cost vectors.
 
-    ``levels``: for each level, the tuple of its rates; ``None`` for a level that counts. Rates lie strictly
-    between 0 and 1.
+    ``levels``: for each level, the tuple of the rates that it multiplies; ``None`` for a level that adds up
+    counts. Rates lie strictly between 0 and 1.
     ``width``: the number of coordinates of a vector.
     """
 
@@ -95,8 +95,8 @@ class Lexicographic:
     ) -> int:
         """Return the sign of ``-log`` of the product of all ``rates[i] ** exponents[i]``.
 
-        It is -1 for a product above 1, and exact. Floats decide it if they are precise enough. Otherwise,
-        logarithms with more and more digits do.
+        The sign is exact. It is -1 for a product above 1. If floats are not precise enough to decide it,
+        logarithms with more and more digits are computed.
         """
         if not any(exponents):
             return 0
@@ -124,8 +124,8 @@ class Lexicographic:
     def _coprime_factors(self) -> list[dict[int, dict[int, int]]]:
         """For each level, the factors of a coprime base of its rates.
 
-        Each factor is mapped to its exponents in the rates, by index of the rate. A factor of a denominator
-        has a negative exponent.
+        Each factor is mapped to the exponent that it has in each rate, by the index of the rate. A factor of
+        a denominator has a negative exponent.
         """
         factors_by_level: list[dict[int, dict[int, int]]] = []
         for rates in self.levels:

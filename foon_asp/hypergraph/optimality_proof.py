@@ -49,8 +49,8 @@ class Rules(Protocol):
     def barred_actions(self, used: frozenset[int], without: frozenset[int]) -> Mapping[int, frozenset[int]]:
         """Return the actions that each rule bars, by the number of the rule.
 
-        A derivation with all ``used`` actions and no action of ``without`` breaks the rule if it also has a
-        barred action.
+        Take a derivation with all ``used`` actions and no action of ``without``. It breaks the rule if it
+        also has a barred action.
         """
 
     def breaking_actions(self, derivation: frozenset[int]) -> Sequence[int]:
@@ -143,7 +143,7 @@ class Prover:
     def relax(self, derivation: Iterable[int]) -> tuple[Packing, Vector] | None:
         """Return the optimal cost partition of the relaxation, before any branching, and its lower bound.
 
-        The relaxation may exceed limits, at a cost far above that of ``derivation``. This argument has no
+        The relaxation may exceed limits. An excess costs 1000 times as much as ``derivation``, which has no
         other effect. The lower bound is rounded up. Return ``None`` if the targets cannot be reached, time is
         up, or exact arithmetic fails.
         """
@@ -257,7 +257,7 @@ class Prover:
         )
 
     def round_up(self, bound: Vector) -> tuple[Vector, int | None]:
-        """Round up a bound at its first coordinate that is no multiple of its number in ``multiples``.
+        """Round up the first coordinate of a bound that is no multiple of its number in ``multiples``.
 
         Later coordinates become 0. Returns the bound, and the index of the coordinate that was rounded. The
         index is ``None`` if none was rounded.
@@ -348,10 +348,10 @@ class Prover:
     def _optimal_partition(
         self, cutter: Cutter, cost: Callable[[int], int], known_cuts: Iterable[frozenset[int]], enough: int
     ) -> CostPartition | None:
-        """Return a cost partition that is optimal, or that puts many actions above the cutoff.
+        """Return an optimal cost partition, or one by which many actions are excluded.
 
-        ``enough`` is the bound that is needed; the search ends when it is reached. Return ``None`` if
-        there is no cost partition.
+        ``enough`` is the bound that is needed; the search ends when it is reached. An action is excluded if
+        the bound plus its reduced cost exceeds ``enough - 1``. Return ``None`` if there is no cost partition.
         """
         partitioning = CostPartitioning(
             self._graph, cutter.targets, cutter.actions, cost, self._expired, known_cuts
@@ -387,9 +387,9 @@ class Prover:
     ) -> Proof | None:
         """Return a proof by reduced-cost fixing.
 
-        A derivation with an action costs at least the sum of the weights of ``packing`` plus the reduced cost
-        of the action. For derivations without the actions above the cutoff, ``others`` proves the goal. If
-        the cuts of that proof have no such action in their landmarks, it is returned as it is.
+        A derivation with an action costs at least the bound of ``packing`` plus the reduced cost of the
+        action. For derivations without the actions above the cutoff, ``others`` proves the goal. If no
+        landmark of the proof by ``others`` has such an action, that proof is returned as it is.
 
         Return ``None`` if too few actions are above the cutoff, or ``step`` is 0.
         """
@@ -405,7 +405,10 @@ class Prover:
         return CostFixing(tuple(sorted(fixed)), packing._replace(rounded=0), proof) if fixed else proof
 
     def _landmark_actions(self, proof: Proof) -> Iterator[int]:
-        """Yield the actions that cross the cuts of a proof, also fixed and forbidden ones, with repeats."""
+        """Yield the actions that cross the cuts of a proof.
+
+        Fixed and forbidden actions are included. An action may be yielded more than once.
+        """
         for objects in {cut.objects for cut in cuts_of(proof)}:
             yield from self._landmark_of(frozenset(objects))
 
@@ -421,7 +424,7 @@ class Prover:
     def _prove_by_search(
         self, cutter: Cutter, goal: Vector, known_cuts: Sequence[Cut], step: Fraction
     ) -> Proof | None:
-        """Return a proof by :func:`prove_by_branching`. Return ``None`` if it has none, or ``step`` is 0.
+        """Return a proof by :func:`prove_by_branching`; ``None`` if it finds none, or ``step`` is 0.
 
         The cuts of the proof are widened, so that they are valid for all actions.
         """
@@ -551,7 +554,7 @@ class _NodeRelaxation:
         return order.compare(self._prover.round_up(value)[0], enough) >= 0
 
     def relax(self, enough: Vector | None) -> ExactOptimum | None:
-        """Add cuts until the bound is ``enough``, or no cut is found that the LP solution violates.
+        """Add violated cuts until the bound is ``enough``, or until no more are found.
 
         ``enough``: the bound that suffices; ``None`` for no such bound. The last LP solution is recorded in
         ``lp_values``. Returns the exact optimum of the rows. Returns ``None`` if exact arithmetic fails.
@@ -622,7 +625,7 @@ class _NodeRelaxation:
     def _separate(self) -> bool:
         """Add cuts with disjoint landmarks that the last LP solution violates.
 
-        Return whether it violates any. At most ``tuning.RELAXATION.cuts`` cuts are added at a call.
+        Return whether there are such cuts. At most ``tuning.RELAXATION.cuts`` cuts are added at a call.
         """
         import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
 

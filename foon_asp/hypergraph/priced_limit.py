@@ -40,9 +40,9 @@ def search_within_limit(
     ``tree``: the units of a tree that exceeds the limit.
     ``row``: the amount of each unit, and the limit on the sum of the amounts of a tree.
 
-    A first tree within the limit is found by :func:`any_within_limit`. The price of an amount of 1 is the
-    Lagrange multiplier at which this first tree and ``tree`` cost the same. It raises the cost of a tree
-    within the limit by at most the price times the limit, so lower bounds carry over. If many units remain at
+    A first tree within the limit is found by :func:`any_within_limit`. An amount of 1 gets the price at which
+    this first tree and ``tree`` cost the same, as a Lagrange multiplier. This price raises the cost of a tree
+    within the limit by at most the price times the limit. So lower bounds carry over. If many units remain at
     this price, lower prices that rise up to it are tried.
 
     If time is up, fewer units are excluded. Returns ``None`` if it stays open whether a tree within the limit
@@ -100,8 +100,7 @@ def _by_rising_prices(
 
     ``incumbent`` is a tree within the limit, and ``exceeding`` a tree that exceeds it. Prices rise from about
     the cost of a unit to the price at which the two trees cost the same. The optimal tree at each price
-    replaces one of the two. The price with the greatest lower bound determines the units of better trees. A
-    reduction at a low price takes hardly longer than one without a price.
+    replaces one of the two. The price with the greatest lower bound determines the units of better trees.
     """
     next_price = Fraction(subproblem.tree_cost(exceeding), len(exceeding))
     greatest_bound: tuple[Fraction, Fraction] | None = None  # bound, and its price
@@ -163,8 +162,8 @@ def any_within_limit(
     """Search for any tree within the limit of ``row``, by minimizing the sum of its amounts.
 
     The search ends at the first tree within the limit. Returns ``WithinLimit(None)`` if a bound proves that
-    there is no such tree. Returns ``None`` if neither is achieved. Raises ``KeyboardInterrupt`` if the search
-    is interrupted.
+    there is no such tree. Returns ``None`` if the search ends with neither a tree nor a proof. Raises
+    ``KeyboardInterrupt`` if the search is interrupted.
     """
     units_cost = ExactCosts(subproblem.problem, (Objective.UNITS,), subproblem.remaining)
     limit = units_cost.strict_upper_bound * (row.bound + 1)

@@ -11,7 +11,7 @@ class Packing(NamedTuple):
     """A cost partition over cuts, which proves a lower bound on the cost of derivations.
 
     The bound is the sum of the weights and of the costs of the used actions. For each limit, a product is
-    subtracted: its weight times the amount of it that the used actions leave.
+    subtracted: the weight of the limit times the amount that the used actions leave of it.
 
     ``weights``: pairs of a cut and its weight.
     ``limits``: pairs of the index of a limit and its weight.

@@ -28,12 +28,11 @@ def neighbourhood(
 
     ``limit``: the greatest reduced cost; ``math.inf`` for no limit.
     ``h_actions``: the h-values of actions. With them, the first action of a path counts with its h-value
-    instead of its reduced cost. This is valid, since no action of its derivation is on the path. Actions
-    without an h-value are excluded.
+    instead of its reduced cost. Actions without an h-value are excluded.
     ``enough``: the number of actions at which the search ends. Then the result is no superset.
     ``min_reduced_cost``: a number that no reduced cost is below.
-    ``reachable``: a test as that of :func:`lazy_h_max_test`, used instead of ``h_actions``. It excludes an
-    action if a precondition cannot be made at what the path leaves of the limit.
+    ``reachable``: a test as returned by :func:`lazy_h_max_test`, used instead of ``h_actions``. An action is
+    excluded if a precondition cannot be made at ``limit`` minus the reduced costs of the path.
     """
     needs, achievers, start = graph.needs, graph.makers, graph.start
     buckets: dict[int, list[int]] = {0: list(graph.goals)}
@@ -83,7 +82,7 @@ def reduced_cost_fixing(
 ) -> set[int]:
     """Return a superset of the allowed actions of irredundant trees of reduced cost up to ``limit``.
 
-    An action is excluded if its h_max plus the reduced costs of a path from it to a goal exceed the limit.
+    An action is excluded if its h_max plus the reduced costs of its cheapest path to a goal exceed the limit.
     Both are computed anew over the remaining actions until no more actions are excluded. If time is up, the
     superset is larger.
     """

@@ -54,8 +54,8 @@ class Reduced(NamedTuple):
     """A presolved question.
 
     ``tree``: the units of the incumbent; ``None`` if there is no tree.
-    ``units``: the units of the incumbent and, unless it is ``settled``, those that a better tree can have,
-    ascending.
+    ``units``: the units of the incumbent, ascending. If not ``settled``, the units that a better tree can
+    have are included.
     ``settled``: whether the incumbent is proved optimal.
     ``costs``: the exact costs; ``None`` if rates are too fine.
     ``bound``: a lower bound on the cost of every tree; 0 if rates are too fine.
@@ -94,7 +94,7 @@ class Listener:
 
 
 class Bounds(Listener):
-    """Observer that passes on bounds but no trees, since these may break rules."""
+    """Observer that passes on bounds but no trees, since the trees may break rules."""
 
     def __init__(self, listener: Listener) -> None:
         self._listener = listener
@@ -189,8 +189,8 @@ def reduce_at_costs(
     ``known_tree``: the units of a tree that may become the first incumbent; empty for none.
     ``below``: a cost; 0 for none. With it, two kinds of units remain: those of trees that cost less than it,
     and those of trees better than the incumbent.
-    ``max_actions``: with ``below``, a number of actions. If more remain, and the first cuts exclude hardly
-    any action, the reduction ends after these cuts.
+    ``max_actions``: a number of actions, used only with ``below``. If more remain, and the first cuts exclude
+    hardly any action, the reduction ends after these cuts.
 
     Interruptions are treated as by :func:`reduce`.
     """
@@ -500,9 +500,10 @@ class _Presolve:
         self.run_guarded(run_from_shared_gap)
 
     def extend_or_run(self) -> None:
-        """Run all rounds; with required sets, first try to extend trees for the goals alone.
+        """Extend trees for the goals alone, so that they have a unit of each required set, or run all rounds.
 
-        This is tried only with the reduction ``dear``. If it leads to a gap, the rounds are not run again.
+        The rounds are run if extending leads to no gap. Nothing is extended without required sets, or without
+        the reduction ``dear``.
         """
         restriction = self.task.problem.restriction
         if restriction is not None and restriction.required and Reduction.DEAR in self.task.reductions:

@@ -14,7 +14,7 @@ class Reduction(StrEnum):
     ``bounds``: looks only for trees better than the incumbent. If a lower bound proves that there are none,
     no search follows.
 
-    The first two keep every optimal tree, the others keep at least one.
+    ``forced`` and ``dear`` keep every optimal tree. ``dominated`` and ``bounds`` keep at least one.
     """
 
     FORCED = "forced"

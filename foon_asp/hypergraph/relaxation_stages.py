@@ -74,10 +74,10 @@ def _starting_cuts(gap: Gap) -> tuple[frozenset[int], ...]:
 def follow_solution(task: Task, gap: Gap, partition: CostPartition, looks: int) -> Stage:
     """Look for better trees that follow an LP solution, then apply its cost partition.
 
-    If the LP solution and the trees use few actions, branch and bound over these looks for better trees.
-    Otherwise, a perturbation search does. Neither is run if the bound of the partition reaches the cost of
-    the incumbent. ``looks`` is the budget: how often each candidate may be looked at. Yields each gap that it
-    reaches.
+    Better trees are looked for in one of two ways. If the LP solution and its trees use few actions, branch
+    and bound is run over the used actions. Otherwise, a perturbation search is run. Neither is run if the
+    bound of the partition reaches the cost of the incumbent. ``looks`` is the budget: how often each
+    candidate may be looked at. Yields each gap that it reaches.
     """
     costs, graph = task.costs, task.graph
     assert costs is not None
@@ -156,7 +156,8 @@ def search_among(
 def may_branch(task: Task, gap: Gap) -> bool:
     """Return whether branching may be used to prove a tree optimal.
 
-    It may not if costs are rounded or have a limit, equally good trees are wanted, or the budget is used up.
+    Return ``False`` if costs are rounded or have a limit. Also return ``False`` if equally good trees are
+    wanted, or if the budget is used up.
     """
     assert task.costs is not None
     return task.only_better(gap) and not (task.costs.doubt or task.costs.has_limit) and gap.budget > 0
@@ -165,10 +166,10 @@ def may_branch(task: Task, gap: Gap) -> bool:
 def branch(task: Task, gap: Gap) -> Stage:
     """Branch and bound over the candidates, within the budget of the gap.
 
-    Does nothing unless :func:`may_branch` allows it, there are many candidates, and the lower bound is close
-    to the cost of the incumbent. Better trees are first looked for in the neighbourhood. If the search closes
-    all nodes, the gap is marked as proved, and the case split becomes evidence. If it only finds a better
-    tree, the last cost partition is applied again. Yields each gap that it reaches.
+    Does nothing if :func:`may_branch` forbids it, or there are few candidates. Also does nothing if the lower
+    bound is far below the cost of the incumbent. Better trees are first looked for in the neighbourhood. If
+    the search closes all nodes, the gap is marked as proved, and the case split becomes evidence. If it only
+    finds a better tree, the last cost partition is applied again. Yields each gap that it reaches.
     """
     costs, graph, limits = task.costs, task.graph, task.tuning
     assert costs is not None

@@ -76,8 +76,8 @@ class SharedLandmarks:
         ``tree``: a tree of the question. The incumbent of the gap is this tree or a better one.
 
         Cuts become evidence only if the gap is not closed by the bound alone, since they are many and large.
-        New landmarks are kept for later questions. If HiGHS fails, the gap has the bound 0, and all actions
-        that are not excluded as candidates.
+        New landmarks are kept for later questions. If HiGHS fails, the bound of the gap is 0, and its
+        candidates are all actions except the excluded ones.
         """
         result = self._relax(task, excluded, tree)
         candidates = self._actions - excluded
@@ -186,7 +186,7 @@ class SharedLandmarks:
     def _record_reached(self, rows: Iterable[int]) -> None:
         """Record for each new landmark, given by number, which objects are reachable without its actions.
 
-        It is a landmark of all other objects.
+        The new landmark is a landmark of all other objects.
         """
         for row in rows:
             landmark = frozenset(self._relaxation.rows[row].tolist())

@@ -16,7 +16,9 @@ if TYPE_CHECKING:  # few questions need it
 
 
 class SolvedGoals:
-    """Trees of solved questions that differ only in goals and removed units, and landmarks that they share.
+    """Trees of solved questions, and landmarks that the questions share.
+
+    The questions differ only in goals and removed units.
 
     Landmarks are shared as soon as a question was solved that greedy cuts alone do not solve. Easier
     questions are solved faster one by one.
@@ -68,8 +70,9 @@ class SolvedGoals:
     def _tree_from_solved(self, task: Task) -> frozenset[int]:
         """Return the best tree found for the only goal of a question.
 
-        Each tree is an achiever of the goal together with trees of its preconditions. The latter are known
-        from solved questions, or follow h_add. Of the cheapest unions, redundant actions are removed.
+        For each achiever of the goal, a union is formed: the achiever and trees of its preconditions. The
+        trees of preconditions are known from solved questions, or follow h_add. Redundant actions are removed
+        from the cheapest unions.
         """
         graph, costs, derivations, trees = task.graph, task.costs, self._derivations, list[set[int]]()
         assert costs is not None
@@ -90,7 +93,7 @@ class SolvedGoals:
         """Return a tree without the removed actions; ``None`` if no such tree exists.
 
         It is the better of two irredundant trees. One follows h_add. The other is a subset of the union of
-        the first and the solved tree of the same goals, if there is one.
+        two trees: the first one, and the tree found earlier for the same goals.
         """
         graph, costs, derivations = task.graph, task.costs, self._derivations
         assert costs is not None
@@ -106,9 +109,9 @@ class SolvedGoals:
     def record(self, task: Task, gap: Gap | None) -> None:
         """Store the tree of a proved gap; other gaps, and ``None``, are ignored.
 
-        If the linear relaxation was needed to prove it, landmarks are shared from now on. They are never
-        shared if costs are rounded, or if this first such question is not reduced by both ``bounds`` and
-        ``dear``.
+        Landmarks are shared as soon as a proof needed the linear relaxation. If the question of the first
+        such proof has rounded costs, or is not reduced by both ``bounds`` and ``dear``, landmarks are never
+        shared.
         """
         if gap is None or not gap.proved:
             return

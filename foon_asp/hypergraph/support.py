@@ -45,8 +45,7 @@ class Support:
     def is_replaceable(self, action: int) -> bool:
         """Return whether each object in use that an action makes has another achiever in the tree.
 
-        A tree with redundant actions has a replaceable action: of the actions that can be removed together,
-        the last in an executable order.
+        A tree with redundant actions has a replaceable action.
         """
         return all(len(self._achievers[o]) > 1 for o in self._graph.gives[action] if self._is_in_use(o))
 
@@ -110,9 +109,10 @@ class Support:
         return rederived, h_actions
 
     def _remove_idle(self, idle: list[int]) -> set[int]:
-        """Remove ``idle`` actions, which are no best achievers, and actions that only these need.
+        """Remove ``idle`` actions, and the best achievers that only they needed.
 
-        Returns the remaining actions that achieve an object that is no longer in use.
+        An action is idle if it is no best achiever of an object in use. Returns the remaining actions that
+        achieve an object that is no longer in use.
         """
         graph, actions = self._graph, self.actions
         freed: set[int] = set()

@@ -52,12 +52,12 @@ class Task:
     def only_better(self, gap: Gap) -> bool:
         """Return whether only trees better than the incumbent are wanted.
 
-        This is so with the reduction ``bounds``, unless the incumbent costs less than ``below``.
+        They are with the reduction ``bounds``, unless the incumbent costs less than ``below``.
         """
         return Reduction.BOUNDS in self.reductions and self.incumbent_cost(gap) >= self.below
 
     def cutoff(self, gap: Gap) -> int:
-        """Return the greatest cost of trees that are still wanted, plus the doubt of costs.
+        """Return the greatest cost of trees that are still wanted, plus :attr:`ExactCosts.doubt`.
 
         With the reduction ``bounds``, trees that cost as much as the incumbent are not wanted.
         """

@@ -53,9 +53,9 @@ class CutTuning(NamedTuple):
     """How landmark cuts and h-values are looked for.
 
     ``guided_cuts``: the number of cuts after which the h-values that guide cuts are computed anew. If there
-    are more targets, h-values are computed after as many cuts as there are targets.
-    ``guides``: how often h-values are computed, at most, while as many cuts are found as there are objects.
-    Each computation looks at all objects, so without a maximum, cuts would take quadratic time
+    are more targets than that, h-values are computed after as many cuts as there are targets.
+    ``guides``: at least ``objects / guides`` cuts are found between two computations of h-values. Each
+    computation looks at all objects, so computing them more often would take quadratic time
     (``benchmarks/shapes.py``, grid by kitchen).
     ``lazy_depth``: the greatest depth of the recursion of lazy h_max.
     ``lazy_looks``: how many actions one lazy h_max test looks at in all.

@@ -21,11 +21,11 @@ def disjoint_violated_cuts(
     values of its landmark become 1.
     ``costs``: an array of the cost of each action.
     ``random_number``: returns numbers from 0 to 1.
-    ``tolerance``: a number. A cut is violated if the values of its landmark add up to less than 1 minus this.
+    ``tolerance``: a cut is violated if the values of its landmark add up to less than ``1 - tolerance``.
 
-    Landmarks avoid actions of great LP value. Among actions of equal value, they avoid those of low cost,
-    after each cost is multiplied by a random factor from 0.5 to 1.5. Ends when the next cut is not violated,
-    or there is no other cut.
+    Landmarks avoid actions of great LP value. Among actions of equal value, they avoid cheap ones, where each
+    cost counts times a random factor from 0.5 to 1.5. Ends when the next cut is not violated, or there is no
+    other cut.
     """
     import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
 

@@ -43,8 +43,8 @@ class Baseline(Struct, frozen=True, tag_field="schema", tag=schema_name("lint-ba
     def compare_with(self, file: Path, findings: Iterable[Diagnostic]) -> tuple[list[Diagnostic], int]:
         """Return the findings that are not in the baseline, and how many in the baseline no longer occur.
 
-        ``file`` is the file of the baseline. If a text has more findings of one code than the baseline lists,
-        the last of them are returned as new.
+        ``file`` is the file of the baseline. A text may have more findings of one code than the baseline
+        lists. Then the last findings of the text are returned as new.
         """
         remaining = Counter[tuple[str, str, str]]()
         for known_finding in self.known:
@@ -76,7 +76,7 @@ def read_baseline(file: Path) -> Baseline:
 def check_replaceable(file: Path) -> None:
     """Raise :class:`UserError` for a file that is neither empty nor a baseline.
 
-    A file that does not exist passes, and so does a folder.
+    A folder, or a file that does not exist, raises no error.
     """
     if file.is_file() and read_content(file):
         try:

@@ -18,9 +18,9 @@ _LETTERS = {Kind.STATE: "S", Kind.OBJECT: "O"}
 def find_other_brackets(context: Context) -> Iterator[Diagnostic]:
     """An ingredient is in `{ }`, a place is in `[ ]`.
 
-    Elsewhere in the files or in the vocabulary, the word before the bracket nearly always has the other kind.
-    Or the whole text, such as `in [bowl]`, is more frequent with the other kind. Or the only thing in `{ }`
-    is an object that others are in or on.
+    A bracket is reported for three reasons. First, in the files or in the vocabulary, the word before the
+    bracket nearly always has the other kind. Second, the whole text, such as `in [bowl]`, is more frequent
+    with the other kind. Third, the only thing in `{ }` is an object that others are in or on.
     """
     mentions = [
         mention for name_mentions in context.names.mentions[Kind.WORD].values() for mention in name_mentions
@@ -48,9 +48,9 @@ def _reason_to_swap_brackets(
 ) -> str:
     """Return in words why an attribute probably needs the other kind of bracket; empty if nothing says so.
 
-    ``counts``: by attribute, the number of lines that have it. The reasons are the three that
-    :func:`find_other_brackets` names. Only the first one is looked for if there are several ingredients, or
-    if the word nearly always has the kind of bracket that the attribute has.
+    ``counts``: by attribute, the number of lines that have it. :func:`find_other_brackets` names the three
+    possible reasons. The second and third reason need a single object in the brackets, and a word without a
+    usual kind of bracket.
     """
     other: Bracket = Contents if isinstance(attribute, Relation) else Relation
     usual = vocabulary.usual_bracket(attribute.word)
@@ -89,10 +89,10 @@ def _with_other_bracket(attribute: Relation | Contents) -> str:
 def find_misread_lines(context: Context) -> Iterator[Diagnostic]:
     """A state looks like a relation or contents without brackets, such as `in bowl` for `in [bowl]`.
 
-    It begins with a word that has brackets elsewhere and continues with the name of an object. Also reported
-    is a state whose name is more often that of an object, or is a utensil. So is an object whose name is more
-    often that of a state. Probably the first letter of the line is wrong. A state that the vocabulary has as
-    a state is not reported, nor is such an object.
+    Such a state begins with a word that has brackets elsewhere and continues with the name of an object. Also
+    reported is a state whose name is a utensil or more often the name of an object. An object is reported if
+    its name is more often the name of a state. Probably the first letter of the line is wrong. States and
+    objects that the vocabulary has as such are not reported.
     """
     names, vocabulary = context.names, context.vocabulary
     states, objects = names.counts[Kind.STATE], names.object_counts
@@ -119,8 +119,8 @@ def _suggested_attribute(state: str, context: Context) -> str:
     """Return the text of the relation or contents that a state probably stands for; empty for a likely state.
 
     For example, ``in [bowl]`` for the state ``in bowl``. The names and words are those of the files and of
-    the vocabulary. The text in the brackets has to be a known object, or several known objects in ``{ }``;
-    after ``contains`` it can be any text that is no known state.
+    the vocabulary. The text in ``[ ]`` has to be a known object. The text in ``{ }`` has to be a list of
+    known objects. After ``contains`` it can be any text that is no known state.
     """
     all_names, words = context.all_names, state.split(" ")
     for length in range(min(3, len(words) - 1), 0, -1):  # a relation has up to three words: on top of

@@ -57,10 +57,11 @@ class Chain:
     def nearest_similar(self, node: int, consumer: int) -> tuple[int, int] | None:
         """Return the position of the nearest unit that makes a node similar to ``node``, and that node's id.
 
-        ``node`` is the id of a node that the unit at the position ``consumer`` needs. A node is similar if it
-        differs little and no unit needs it. Up to 8 units back, it is also similar if it has one state more.
-        Only the 25 units before ``consumer`` are searched. Of several similar nodes of a unit, the one with
-        the least id is returned. Return ``None`` if no unit makes a similar node.
+        ``node`` is the id of a node that the unit at the position ``consumer`` needs. A made node is similar
+        if it differs little from ``node`` and no unit needs it. A node made up to 8 units back is also
+        similar if it is ``node`` with one more state. Only the 25 units before ``consumer`` are searched. If
+        a unit makes several similar nodes, the one with the least id is returned. Return ``None`` if no unit
+        makes a similar node.
         """
         wanted = self.objects[node]
         for distance in range(1, min(consumer, MAX_DISTANCE) + 1):
@@ -78,9 +79,9 @@ class Chain:
     def _may_be_same(self, node: int, consumer: int, other: int, producer: int) -> bool:
         """Whether the needed ``node`` and the made node ``other`` are probably meant to be one node.
 
-        ``consumer`` and ``producer`` are the positions of the units. The nodes have to differ little. If they
-        are in different places, and each unit lists the places of its node, they are probably two nodes. A
-        place that differs by a slip of spelling does not count as different.
+        ``consumer`` and ``producer`` are the positions of the units. The nodes have to differ little. Two
+        nodes in different places are not one node if each unit lists the places of its node. Places that
+        differ by a slip of spelling do not count as different.
         """
         needed, made = self.objects[node], self.objects[other]
         return _differ_little(needed, made, consumer - producer) and (
@@ -102,11 +103,14 @@ class Chain:
 def _differ_little(needed: ObjectNode, made: ObjectNode, distance: int) -> bool:
     """Whether two nodes differ so little that they may be meant to be one, for example in one state.
 
-    They may differ in a slip of spelling, in one state, in one relation, or in one of several ingredients.
-    If they have several attributes, they may differ in their labels alone up to 2 units apart, or have one
-    state or relation in place of another up to 8 units apart. If ``needed`` has neither relations nor
-    contents, it may lack a relation only up to 2 units apart. ``distance`` is the number of units from the
-    one that makes ``made`` to the one that needs ``needed``.
+    ``distance`` is the number of units from the one that makes ``made`` to the one that needs ``needed``. The
+    nodes may differ in one way:
+
+    - in a slip of spelling, in one state, or in one of several ingredients;
+    - in one relation, if ``needed`` has a relation or contents, or if the distance is at most 2;
+    - in one state or relation in place of another, if they have several attributes and the distance is at
+      most 8;
+    - in their labels alone, if they have several attributes and the distance is at most 2.
     """
     if needed.label != made.label:
         return distance <= _SHORT_DISTANCE and _count_attributes(needed) > 1 and needed[1:] == made[1:]

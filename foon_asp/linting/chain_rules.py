@@ -12,11 +12,11 @@ from foon_asp.text.diagnostics import Diagnostic
 
 @rule("broken-chain", WARNING, "an object that is taken, and made a little different")
 def find_broken_chains(context: Context) -> Iterator[Diagnostic]:
-    """A unit takes an object that no unit makes; an earlier unit makes an object that differs in a little.
+    """A unit takes an object that no unit makes; an earlier unit makes an object that is a little different.
 
-    Usually no unit takes the other object either. A state, a place or an ingredient is missing in one of the
-    two, or is spelt differently. No task tree can go through here. Both lines are reported. Only units near
-    each other in one file are compared.
+    Usually no unit takes the made object either. A state, a place or an ingredient is missing in one of the
+    two objects, or is spelt differently. No task tree can go through here. Both lines are reported. Only
+    units near each other in one file are compared.
     """
     for chain in context.chains:
         for node, consumer in chain.unmade_nodes():
@@ -44,9 +44,8 @@ def find_left_out_objects(context: Context) -> Iterator[Diagnostic]:
     """A unit makes a container with an object in it, but does not make the object; or the other way round.
 
     A later unit takes both, and no unit makes the missing one. Also reported is an input that is in or on
-    something which is an output of the unit and no input. For example, food is scraped from a board, and the
-    board is only among the outputs. What is a `broken-chain`, `unheld` or `other-place` is not reported
-    again.
+    something that the unit lists only among its outputs. For example, food is scraped from a board, and the
+    board is no input. Nothing is reported again that is a `broken-chain`, `unheld` or `other-place`.
     """
     for chain in context.chains:
         for node, consumer in chain.unmade_nodes():
@@ -79,10 +78,11 @@ def find_left_out_objects(context: Context) -> Iterator[Diagnostic]:
 def _producer_of_companion(chain: Chain, node: int, consumer: int) -> tuple[int, int] | None:
     """Find a unit that makes a companion of a node without the node; return its position and the companion.
 
-    A companion of the node is the container that it is in, or an object in it. The unit at the position
-    ``consumer`` takes both. Nodes are ids. Only the last unit before ``consumer`` that makes the companion is
-    considered, up to 25 units back. It must have no output with the label of the node. If the companion is
-    the container, an input must have this label. Return ``None`` if there is no such unit.
+    A companion of the node is the container that the node is in, or an object in the node. The unit at the
+    position ``consumer`` takes both. Nodes are ids. Only the last unit before ``consumer`` that makes the
+    companion is considered, up to 25 units back. None of its outputs may have the label of the node. If the
+    companion is the container, one of its inputs must have this label. Return ``None`` if there is no such
+    unit.
     """
     unmade_node = chain.objects[node]
     for companion in chain.network.inputs[chain.units[consumer]]:

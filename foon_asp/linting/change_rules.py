@@ -10,7 +10,7 @@ from foon_asp.text.diagnostics import Diagnostic
 
 
 def _is_seldom(count: int, total: int) -> bool:
-    """Whether ``count`` is at most an eighth of ``total``, the number of units with a motion.
+    """Whether ``count`` of ``total`` units with a motion are few: at most one in eight.
 
     False for fewer than three units, which tell nothing about a motion.
     """
@@ -50,7 +50,7 @@ def find_lost_contents(context: Context) -> Iterator[Diagnostic]:
 
 @rule("gained-contents", WARNING, "contents that gain something, which no input has")
 def find_gained_contents(context: Context) -> Iterator[Diagnostic]:
-    """A container keeps its contents in a unit and has further contents after it, which are in no input.
+    """A container keeps its contents in a unit and gets further contents, which are in no input.
 
     Motions that show what is inside, such as `open`, are not reported.
     """
@@ -82,10 +82,10 @@ def find_outputs_from_nothing(context: Context) -> Iterator[Diagnostic]:
 
 
 def _units_by_made_node(context: Context) -> dict[ObjectNode, int]:
-    """Return, by node, the id of the first unit that makes it and mentions its label among the inputs.
+    """Return, by node, the id of the first unit that makes it out of inputs that name its label.
 
-    An input mentions its own label, its contents, and the objects of its relations. Nodes without such a unit
-    are left out.
+    The names of an input are its label, its contents and the objects of its relations. Nodes without such a
+    unit are left out.
     """
     units: dict[ObjectNode, int] = {}
     for side in context.sides:

@@ -53,7 +53,7 @@ class Context:
 
     @cached_property
     def remarks(self) -> dict[str, list[Diagnostic]]:
-        """The remarks of the reader on the files, by code. They keep only fixes that are certain."""
+        """The remarks of the reader on the files, by code; only fixes that are certain are kept."""
         return remarks_by_code(self.files, self.all_names)
 
     @cached_property
@@ -96,7 +96,7 @@ class Context:
     def finding_at_node(self, copy: Copy, side: int, node: ObjectNode, message: str) -> Diagnostic:
         """Return a finding at the object line of an input (``side`` 0) or output (1) of a copy of a unit.
 
-        The line is that of :meth:`node_line`, the column that of the label.
+        Its line is the one that :meth:`node_line` returns. Its column is that of the label.
         """
         sheet = self.sheets[copy.sheet]
         return sheet.finding(message, self.node_line(copy, side, node), node.label)
@@ -112,7 +112,8 @@ class Context:
     def node_line(self, copy: Copy, side: int, node: ObjectNode) -> int:
         """Return the index of the object line of a node in a copy of a unit.
 
-        It is the first line of the copy if that side, inputs (0) or outputs (1), does not list the node.
+        ``side`` is 0 for inputs and 1 for outputs. If this side does not list the node, return the index of
+        the first line of the copy.
         """
         blocks = self.node_lines(copy)[side]
         return next((index for index, listed_node in blocks if listed_node == node), copy.first_index)

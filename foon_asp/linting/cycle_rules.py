@@ -14,11 +14,11 @@ def find_dead_cycles(context: Context) -> Iterator[Diagnostic]:
     """No task tree can make the objects of a cycle unless one is available, as each needs another of them.
 
     This may be intended, as with a bottle that is opened and closed again. Then put one of the objects into
-    the kitchen; if the kitchen is linted together with the network, the cycle is not reported. Or a state is
-    wrong, and the cycle was meant to begin with another object. An object that a unit both needs and makes,
-    such as the knife that chops, does not count as made by the unit. All other objects are assumed to be
-    available, and so are utensils in any state, such as a stove that is off. The cycle is reported at the
-    unit where it is first entered.
+    the kitchen, and lint the kitchen together with the network. Otherwise a state is wrong, and the cycle was
+    meant to begin with another object. A unit that both needs and makes an object, such as the knife that
+    chops, does not count as making it. All objects outside the cycle are assumed to be available. Utensils
+    are available in any state, such as a stove that is off. The cycle is reported at the unit where it is
+    first entered.
     """
     network, sheets = context.network, context.sheets
     for cycle in dead_cycles(network, _available_nodes(context)):

@@ -13,7 +13,7 @@ from foon_asp.text.line import ObjectLine
 
 @rule("unmade-goal", WARNING, "a goal that no unit makes")
 def find_unmade_goals(context: Context) -> Iterator[Diagnostic]:
-    """The goal is not an output of any unit, or only of units that need it.
+    """No unit makes the goal, or only units that need it make it.
 
     A goal is an object line with a recipe category or `!`, or an entry of a list of goals. A list of goals is
     a file with `goal` in its name. Lists are compared with the networks that are linted together with them.
@@ -46,8 +46,8 @@ def find_unknown_items(context: Context) -> Iterator[Diagnostic]:
 def find_wrong_amounts(context: Context) -> Iterator[Diagnostic]:
     """A line `# Amount:` with a tab and a number stands below an object line and says how many there are.
 
-    An object line has at most one such line. If a kitchen or a list of goals has an object several times, all
-    its entries have the same amount, or none has one.
+    An object line has at most one such line. A kitchen or a list of goals may have an object several times.
+    Then all its entries have the same amount, or none has an amount.
     """
     yield from context.remarks.get("amount", [])
     for sheet in context.sheets:
@@ -91,7 +91,7 @@ def _unmade_marked_goals(sheet: Sheet, context: Context) -> Iterator[Diagnostic]
 def _unknown_entries(sheet: Sheet, network: Network) -> Iterator[Diagnostic]:
     """Yield a finding for each entry of a list that matches no object node of the network.
 
-    If most entries match none, and more than ten, yield one finding about all of them.
+    If more than ten entries match none, and they are most of the list, yield one finding about them all.
     """
     entries = sheet.entries or ()
     unknown = [entry for entry in entries if not network.find(entry.pattern)]

@@ -14,9 +14,9 @@ _NO_NAMES: frozenset[str] = frozenset()
 class Changes(NamedTuple):
     """The changes of a unit that may be slips. Nodes are given as ids.
 
-    ``lost``: by output, the names of the contents that it loses. The output is a container that keeps other
-    contents.
-    ``gained``: by such an output, the names of the contents that it gains.
+    ``lost``: by container, the names of the contents that it loses. The container is an output that keeps
+    other contents.
+    ``gained``: by such a container, the names of the contents that it gains.
     ``new``: outputs that come from no input.
     ``gone``: inputs that are in no output.
     ``keeps``: whether a container keeps some of its contents.
@@ -60,7 +60,7 @@ class Habit(NamedTuple):
 
 
 class Habits:
-    """What the units of a network change in their objects, and which names are ingredients.
+    """The changes that each unit of a network makes, and which names are ingredients.
 
     ``ingredients``: all names that stand among contents.
     ``foods``: the ingredients that never have contents and to which no object has a relation.
@@ -86,9 +86,9 @@ class Habits:
     def changes(self, unit: int) -> Changes:
         """Return the changes that a unit makes to objects and contents, as far as they may be slips.
 
-        Names that share a word, such as egg and beaten egg, count as one object. Of the inputs, only foods
-        can be gone. If inputs are gone and other outputs are new, neither are listed: the inputs became the
-        outputs. A container that both loses and gains contents is not listed either.
+        Names that share a word, such as egg and beaten egg, count as one object. Only inputs that are foods
+        can be gone. If foods are gone and outputs are new, the foods became the outputs, and neither are
+        listed. A container that both loses and gains contents is not listed either.
         """
         objects = self.network.objects
         inputs = {node: objects[node] for node in self.network.inputs[unit]}

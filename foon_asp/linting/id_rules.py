@@ -14,7 +14,7 @@ _KINDS = {"O": "object", "S": "state", "M": "motion"}
 
 
 class _Use(NamedTuple):
-    """A name under an id, or an id under a name.
+    """A name that stands with an id, or an id that stands with a name.
 
     ``occurrences`` is the number of lines that have both the name and the id. ``first_index`` is the index of
     the first such line.

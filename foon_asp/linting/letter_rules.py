@@ -21,10 +21,10 @@ _UNSEEN = {"Cc", "Cf", "Zl", "Zp", "Zs"}
 def find_ambiguous_letters(context: Context) -> Iterator[Diagnostic]:
     """Two names look the same but differ, which nobody can see.
 
-    One name has a control character, a letter without width, or a blank that is not the usual one. Or it has
-    a Cyrillic or Greek letter among Latin ones; a word in a single script is fine. Or an accented letter is
-    two characters in one name and one character in the other; then the rarer form is reported. Type the name
-    again, or copy it.
+    There are three kinds. A name has a control character, a letter without width, or a blank that is not the
+    usual one. A name has a Cyrillic or Greek letter among Latin ones; a word in a single script is fine. An
+    accented letter is two characters in one name and one character in the other; then the rarer form is
+    reported. Type the name again, or copy it.
     """
     odd_lines = [
         (sheet, index, line)

@@ -87,7 +87,7 @@ def read_settings(file: Path) -> LintSettings | None:
     """Read the settings in a TOML file; ``None`` if it has no table for them.
 
     Raises :class:`InputError` with line and column of everything that is not understood. In
-    ``foon-asp.toml``, this includes a table ``[lint]``.
+    ``foon-asp.toml``, a table ``[lint]`` is such an error.
     """
     text = read_plain_text(file)
     try:
@@ -153,7 +153,7 @@ def _code_list_faults(path: tuple[str, ...], value: object) -> Iterator[_Fault]:
 def _key_position(text: str, path: tuple[str, ...]) -> tuple[int, int]:
     """Return line and column, from 1, of the last key of ``path`` in the text of a TOML file.
 
-    ``path`` are keys from the table of settings on. Keys that are not found are passed over.
+    ``path`` begins with the first key below the table of settings. Keys that are not found are passed over.
     """
     matches = [match for match in _WORD.finditer(text) if match[0][0] != "#"]
     words = [match[0].strip("\"'") for match in matches]

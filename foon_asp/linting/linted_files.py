@@ -26,8 +26,8 @@ _LINE_BREAK = re.compile(r"[\r\n]")
 def with_tables(paths: Iterable[Path], files: Iterable[Path]) -> list[Path]:
     """Return ``files``, and then the tables in the folders among ``paths``, each file once.
 
-    Tables are files with a name such as ``motion.txt`` (rates) or ``utensils.txt``. Folders are searched with
-    all folders in them.
+    Tables are files with a name such as ``motion.txt`` (rates) or ``utensils.txt``. Subfolders are searched,
+    too.
     """
     folders = [path for path in paths if path.is_dir()]
     tables = [file for folder in folders for file in sorted(folder.rglob("*.txt")) if file.name in TABLES]
@@ -118,7 +118,7 @@ class LintedFiles:
         """Read a JSON file as a sheet of equivalent lines of FOON text, and add its units to the network.
 
         ``source_lines`` are the lines of the file itself. A list of objects, such as a kitchen or goals, has
-        entries instead of units; there, errors become remarks, and so do values without a meaning.
+        entries instead of units. In such a list, errors and values without a meaning become remarks.
         """
         lines: list[str] = []
         sources: list[Source] = []
@@ -152,9 +152,9 @@ class LintedFiles:
         self.remarks += elements.errors
 
     def _add_unit(self, motion: str, sides: tuple[list[ObjectNode], list[ObjectNode]], index: int) -> None:
-        """Add a unit of the last sheet to the network, and record this copy of it.
+        """Add a unit of the last sheet to the network, and record it as a copy of that unit.
 
-        ``sides`` are its inputs and outputs, ``index`` is the index of its first line.
+        ``sides`` are the inputs and outputs, ``index`` is the index of the first line of the unit.
         """
         unit = self._builder.add(motion, *sides)
         if unit == len(self.copies):

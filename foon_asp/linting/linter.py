@@ -34,7 +34,7 @@ def lint(
 def lint_context(context: Context) -> list[Diagnostic]:
     """Return the findings about files that were read; they are sorted and silenced as in :func:`lint`.
 
-    Also adds the findings of all rules but ``noqa``, silenced or not, to ``context.findings``.
+    The findings of all rules but ``noqa`` are also added to ``context.findings``, including silenced ones.
     """
     for rule in CATALOG.values():
         if rule.code != _ABOUT_FINDINGS:

@@ -24,11 +24,11 @@ def is_mendable(finding: Diagnostic, unsafe: bool = False) -> bool:
 def mend(content: bytes, findings: Iterable[Diagnostic], unsafe: bool = False) -> bytes:
     """Return the bytes of a file with the fixes of findings applied.
 
-    With ``unsafe``, fixes that change what is read are applied, too, and then renames in the whole file.
+    With ``unsafe``, fixes that change what is read are applied, too. Renames then follow in the whole file.
 
-    All other bytes stay: line ends, a byte order mark, and lines without a fix. A line that is not as it was
-    when it was linted stays, too. If a ``//`` is added below the last unit, it gets the line end of the line
-    above it. If that line has none, it gets the one of the first line.
+    All other bytes stay: line ends, a byte order mark, and lines without a fix. A line that has changed since
+    it was linted stays, too. A ``//`` that is added below the last unit gets the line end of the line above
+    it. If that line has no line end, the ``//`` gets the one of the first line.
     """
     fixes: dict[int, tuple[bytes, bytes]] = {}
     unclosed_lines: set[int] = set()

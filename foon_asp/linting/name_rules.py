@@ -18,11 +18,11 @@ def find_near_names(context: Context) -> Iterator[Diagnostic]:
 
     The kinds are objects (with containers and ingredients), states, motions, and words of relations. Names
     that differ only in doubled letters, capitals, spaces or hyphens are reported however often they occur.
-    Names that differ in a single letter are reported if one of them is rare, not in the vocabulary, or never
-    made or never taken. The letter is missing, added, changed, or swapped with the next. Singular and plural,
-    endings of verbs (`cube` and `cubed`), digits, and different first letters do not count as slips; `gratd`
-    for `grated` does. Each pair is reported once in each file, at the rarer name, which need not be the wrong
-    one.
+    Names that differ in a single letter are reported if one name is rare, not in the vocabulary, or never
+    made or never taken. The letter is missing, added, changed, or swapped with the next. Four differences do
+    not count as slips: singular and plural, endings of verbs (`cube` and `cubed`), digits, and different
+    first letters. But `gratd` for `grated` is a slip. Each pair is reported once in each file, at the rarer
+    name. The rarer name need not be the wrong one.
     """
     for kind, pairs in context.near_names.items():
         for name, meant in pairs:
@@ -32,8 +32,8 @@ def find_near_names(context: Context) -> Iterator[Diagnostic]:
 def _near_name_findings(context: Context, kind: Kind, name: str, meant: str) -> Iterator[Diagnostic]:
     """Yield a finding for each sheet with ``name``, which is probably ``meant`` misspelt.
 
-    The finding has a rename to ``meant`` if ``meant`` is more frequent, or if only ``name`` has a word that
-    the vocabulary does not know.
+    The finding has a rename to ``meant`` if ``meant`` is more frequent. It also has one if only ``name`` has
+    a word that the vocabulary does not know.
     """
     names, words = context.names, context.vocabulary.words
     counts = names.counts[kind]
@@ -104,7 +104,8 @@ def _unlisted_name_findings(
 
     ``bracket`` is ``Relation`` for ``[ ]`` or ``Contents`` for ``{ }``. ``role`` and ``advice`` are parts of
     the messages. Brackets in kitchens and lists of goals do not count. Names that are reported as `near-name`
-    or `misspelt` are skipped. So are names that resemble no object and have only words of the vocabulary.
+    or `misspelt` are skipped. Names that resemble no object are skipped if the vocabulary has all their
+    words.
     """
     names, vocabulary = context.names, context.vocabulary
     for name, mentions in names.mentions[Kind.OBJECT].items():

@@ -80,8 +80,8 @@ class Names:
     def similar_labels(self, name: str) -> list[str]:
         """Return labels of object lines that a name may stand for, the most frequent first.
 
-        A label may be meant if it is the name in the singular or plural. If no label is, up to three labels
-        are returned that end with the words of the name.
+        These are the labels that equal the name in the singular or plural. If there are none, return up to
+        three labels that end with the words of the name.
         """
         singular = _singular(name)
         alike = self._labels_by_ending.get(singular, [])

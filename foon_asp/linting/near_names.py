@@ -17,13 +17,13 @@ class _SlipLimits(NamedTuple):
     ``ratio``, ``high_ratio``, ``highest_ratio``: how many times as often the other name must be mentioned, at
     least.
     ``short``, ``medium``, ``long``: the least numbers of letters of the shorter word. Shorter words are
-    mostly different words (off and of, bell and bel). With lower limits, more slips are found, and more words
-    are wrongly reported.
+    mostly different words (off and of, bell and bel). Lower limits find more slips and report
+    more right words.
     ``compared``: how many of the names that share all letters but one are compared, the most frequent first.
     ``name_letters``: the greatest number of letters of a name; longer texts are no names, and slow to
     compare.
 
-    Which of the numbers applies depends on the kind of slip (:func:`_is_rare_enough`).
+    The kind of slip decides which number applies (see :func:`_is_rare_enough`).
     """
 
     rare: int = 5
@@ -54,9 +54,6 @@ def near_names(
     a word is missing, added, changed or swapped (``baking try``). A rare name has at most five mentions. The
     first letter of the word must be equal. Grammatical endings (egg, eggs) and different digits are no slips.
     A rare name is in one pair at most. Names of more than 60 letters are in no pair.
-
-    Two names are compared only if their deletion neighbourhoods overlap. The deletion neighbourhood of a name
-    is the name and all texts that lack one of its letters.
 
     Parameters:
         counts: The number of mentions of each name.
@@ -103,9 +100,9 @@ def near_names(
 def _spelling_variants(counts: dict[str, int], known_words: Collection[str]) -> Iterator[tuple[str, str]]:
     """Yield pairs of names that differ only in doubled letters, capitals, blanks and hyphens.
 
-    The second name is the usual one: it has only known words, or else it is the most frequent. Short names
-    must also agree in their doubled letters. A name is short if it has less than five letters when a doubled
-    letter counts once. Names of more than 60 letters are left out.
+    The second name is the usual one. This is a name that has only known words, or else the most frequent
+    name. Short names must also agree in their doubled letters. A name is short if it has less than five
+    letters when a doubled letter counts once. Names of more than 60 letters are left out.
     """
     spellings: dict[str, list[str]] = {}
     for name in counts:
@@ -176,7 +173,8 @@ def _has_unknown_word(name: str, known_words: Collection[str]) -> bool:
 def _differ_by_a_slip(word: str, other: str, verbs: bool) -> bool:
     """Whether two words differ by one letter after the first, and not only in their grammatical ending.
 
-    The letter is missing, added, changed or swapped. A final d in place of ed is a slip, too: ``gratd``.
+    The letter is missing, added, changed or swapped. A final d in place of ed is also a slip, as in
+    ``gratd``.
     """
     ending = _VERB_ENDING if verbs else _PLURAL_ENDING
     is_grammar = ending.sub("", word) == ending.sub("", other)
@@ -216,9 +214,9 @@ def _is_slip(
 def _is_rare_enough(word: str, other: str, rare: int, frequent: int) -> bool:
     """Whether a word is so much rarer than a similar word that it is probably a slip.
 
-    ``rare`` and ``frequent`` are the numbers of mentions of the names with these words. How many times more
-    frequent the other name must be depends on the length of the words and on their difference: swapped
-    letters, a changed letter, or a missing one. It must have at least three mentions.
+    ``rare`` and ``frequent`` are the numbers of mentions of the names with these words. The other name must
+    have at least three mentions. How many times more frequent it must be depends on the length of the words
+    and on how they differ. They differ by swapped letters, a changed letter, or a missing one.
     """
     # Short words, and words with another letter, are mostly words of their own: dip, drip; batter, butter.
     shortest, ratio = min(len(word), len(other)), frequent / rare

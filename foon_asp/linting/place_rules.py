@@ -27,10 +27,16 @@ def find_unheld_objects(context: Context) -> Iterator[Diagnostic]:
 def unheld_nodes(side: Side, habits: Habits) -> FaultyNodes:
     """Yield each food that is in a container whose contents do not list it, with the message.
 
-    Skipped are containers with several such foods, containers whose label is not unique on this side, and
-    containers that are ingredients themselves. Also skipped are foods that another node contains, foods with
-    contents of their own, and foods that share a word with the contents. A container is skipped as well if
-    one of its listed contents is in it on this side and has contents itself.
+    Containers are skipped
+    - that have several such foods,
+    - whose label is not unique on this side,
+    - that are ingredients themselves, or
+    - that hold on this side a listed content which has contents itself.
+
+    Foods are skipped
+    - that another node contains,
+    - that have contents of their own, or
+    - that share a word with the contents.
     """
     for holder in side.nodes:
         contents = content_names(holder)
@@ -65,8 +71,8 @@ def unheld_nodes(side: Side, habits: Habits) -> FaultyNodes:
 def find_objects_in_other_places(context: Context) -> Iterator[Diagnostic]:
     """The object is in a place that is not in the unit, and something else in the unit contains the object.
 
-    Also reported is an object without a place that a container in the unit contains. It is reported only if
-    the files mostly state for objects among contents that they are in their container.
+    Also reported is an object without a place that a container in the unit contains. Such an object is
+    reported only if the files mostly state that contents are in their container.
     """
     objects = context.network.objects
     labels = {node.label for node in objects}
@@ -83,11 +89,15 @@ def find_objects_in_other_places(context: Context) -> Iterator[Diagnostic]:
 
 
 def misplaced_nodes(side: Side, labels: Collection[str], habits: Habits) -> FaultyNodes:
-    """Yield the nodes in or on an object that this side does not list, if another node contains them.
+    """Yield each node that another node contains, and that is in or on an object missing on this side.
 
-    With each node comes the message. ``labels`` are those of all nodes of the network; the object must have
-    one of them. A node is skipped if the object or the containing node is an ingredient, if both share a
-    word, or if the containing node is in or on the object.
+    With each node comes the message. ``labels`` are the labels of all nodes of the network; the label of the
+    missing object is among them.
+
+    A node is skipped
+    - if the object or the containing node is an ingredient,
+    - if the object and the containing node share a word, or
+    - if the containing node is in or on the object.
     """
     labels_of_side = {node.label for node in side.nodes}
     for node in side.nodes:
@@ -116,9 +126,9 @@ def misplaced_nodes(side: Side, labels: Collection[str], habits: Habits) -> Faul
 
 
 def _places_are_usual(context: Context) -> bool:
-    """Whether the files mostly state for an object among contents a relation to its container.
+    """Whether the files mostly state that an object among contents has a relation to its container.
 
-    That is, more than twice as often as they state no relation for it.
+    They mostly state it if they do so more than twice as often as they state no relation of the object.
     """
     placed = unplaced = 0
     for side in context.sides:
@@ -133,9 +143,9 @@ def _places_are_usual(context: Context) -> bool:
 def _unplaced_foods(side: Side, places: Collection[str], habits: Habits) -> FaultyNodes:
     """Yield each food without a stated place that exactly one node of this side contains, with the message.
 
-    ``places`` are the labels that may be places; the containing node must have one of them. If the food is
-    the only content, and the other side of the unit states that it is in the container, the unit puts it
-    there, and the food is skipped. So are foods whose label is not unique on this side.
+    ``places`` are the labels that may be places; the containing node must have one of them. A food whose
+    label is not unique on this side is skipped. A food is also skipped if the unit puts it into the container
+    or takes it out. It does so if the food is the only content, and is in the container on the other side.
     """
     for node in side.nodes:
         if node.relations or node.contents or node.label not in habits.foods:
@@ -154,9 +164,9 @@ def _unplaced_foods(side: Side, places: Collection[str], habits: Habits) -> Faul
 
 
 def inputs_placed_in_outputs(side: Side) -> FaultyNodes:
-    """Yield each node in or on an object that only the other side lists, with the beginning of a message.
+    """Yield inputs in or on an object that only the outputs list, each with the beginning of a message.
 
-    ``side`` are the inputs of a unit. Each such object is reported once.
+    ``side`` are the inputs of a unit. An object is reported for one input only.
     """
     own_labels, other_labels = ({node.label for node in nodes} for nodes in (side.nodes, side.others))
     for node in side.nodes:

@@ -161,9 +161,9 @@ _register_reader_rule(
 def find_spaces_for_tabs(context: Context) -> Iterator[Diagnostic]:
     """The letter, the name, the brackets and the motion flag are separated by tabs.
 
-    A space in place of such a tab is read as a tab, and `--fix` replaces it. Only a motion flag after a space
-    is read as a part of the name. It is reported if other lines have flags, or if the text before the flag is
-    a name elsewhere.
+    A space in place of such a tab is read as a tab, and `--fix` replaces it. A motion flag after a space is
+    the exception: it is read as a part of the name. It is reported if other lines have flags, or if the text
+    before it is a name elsewhere.
     """
     yield from context.remarks.get("space-for-tab", ())
     for sheet in context.sheets:

@@ -95,7 +95,7 @@ def find_missing_rates(context: Context) -> Iterator[Diagnostic]:
 
 
 def _first_rows(sheet: Sheet) -> dict[str, int]:
-    """Return by name the index of its first row in a table; rows that cannot be read are left out."""
+    """Return, by name, the index of the first row with the name; rows that cannot be read are left out."""
     bad = {fault.source.line for fault in _table_errors(sheet)}
     rows: dict[str, int] = {}
     for index, line in enumerate(sheet.lines):

@@ -96,8 +96,9 @@ def _spans(text: str) -> list[tuple[_Clock, _Clock]]:
 def find_unlikely_times(context: Context) -> Iterator[Diagnostic]:
     """A step ends before it begins or lasts much longer than others, or a time has more than 59 seconds.
 
-    Also reported is a time of hours where most times of the file are minutes, and `1:38:50` where other times
-    are `m:ss`. There the last number is usually a fraction of a second, and the time is read as hours.
+    Also reported is a time of hours where most times of the file are minutes. Where other times are `m:ss`, a
+    time such as `1:38:50` is reported as well. It is read as hours, but its last number is usually a fraction
+    of a second.
     """
     for sheet, _, odd in _timed_sheets(context):
         for motion_index, (message, column) in odd.items():
@@ -133,7 +134,7 @@ def _odd_times(steps: list[_Step]) -> dict[int, tuple[str, int]]:
     def span_fault(start: _Clock, end: _Clock) -> str:
         """Return the message about a span that ends before it begins or is too long; empty for a likely one.
 
-        It is too long from 20 minutes on if it is also 20 times as long as the median of all spans.
+        A span is too long if it lasts at least 20 minutes and at least 20 times the median of all spans.
         """
         if end.seconds < start.seconds:
             return f"the step ends at {end.text}, before it begins at {start.text}"

@@ -56,8 +56,8 @@ def find_repeated_objects(context: Context) -> Iterator[Diagnostic]:
     """Inputs and outputs of a unit, and states of an object, are sets: what stands twice counts once.
 
     Two eggs are two nodes only if they differ, for example in their places. A table (`unit_amounts.txt`) says
-    how many are taken. Often a state line is missing under one of the two. In JSON and neutral lines, a node
-    that is listed twice is meant twice.
+    how many are taken. Often a state line is missing under one of two equal objects. In JSON and neutral
+    lines, a node that is listed twice is meant twice.
     """
     network = context.network
     for unit, copies in enumerate(context.files.copies):
@@ -89,8 +89,8 @@ def _repeated_nodes(context: Context, copy: Copy) -> Iterator[Diagnostic]:
 def find_second_relations(context: Context) -> Iterator[Diagnostic]:
     """An object can be in two relations, such as `on [tray]` and `covered [foil]`, but not in two places.
 
-    It cannot have two relations by one word, or two lists of contents by one word either. When an object is
-    moved, its old place has to be removed. All contents belong on one line.
+    It cannot have two relations with the same word, or two lists of contents with the same word. When an
+    object is moved, its old place has to be removed. All contents belong on one line.
     """
     for sheet in context.sheets:
         labels = {

@@ -93,7 +93,8 @@ class Vocabulary:
     def _deletion_indexes(self) -> dict[Kind, dict[str, list[str]]]:
         """By kind of name, the :func:`deletion_index` of the words in its names.
 
-        States and motions share an index. For each word in ed, the word with un before it is indexed as well.
+        States and motions share an index. For each word that ends in ed, a word with un before it is added:
+        unpeeled for peeled.
         """
         indexes = {}
         for kind in Kind:
@@ -170,7 +171,7 @@ def read_vocabulary(file: Path) -> Vocabulary:
     rows: list[_Row] = []
 
     def read_row(kind: str, row: str, _: object) -> None:
-        """Add a line, of which ``row`` is the text after the kind, to ``rows``."""
+        """Add a line to ``rows``; ``row`` is the text of the line after the kind."""
         if kind not in _NUMBERS:
             raise LineError(1, repr(kind), tuple(_NUMBERS))
         name, *numbers = row.split("\t")

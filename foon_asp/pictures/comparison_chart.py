@@ -1,4 +1,4 @@
-"""Box plot of a comparison of searches: the units of their trees divided by those of the optimum."""
+"""Box plot of a comparison of searches: the sizes of their trees, relative to the size of the optimum."""
 
 from collections.abc import Sequence
 from pathlib import Path

@@ -87,9 +87,12 @@ def draw_tree(
     makes under the container rule; ``None`` if each makes all its outputs.
 
     A kitchen item is a separate box at every use, since one shared box of the knife would connect everything.
-    A by-product is also a separate box. An output is a by-product in three cases: it is neither a goal nor an
-    input of a unit, it is available without the unit, or the container rule does not count it as made. It is
-    available if the kitchen has it or an earlier step has made it.
+    A by-product is also a separate box.
+
+    An output is a by-product
+    - if it is neither a goal nor an input of a unit,
+    - if the kitchen has it or an earlier step has made it, or
+    - if the container rule does not count it as made.
     """
     achievers: dict[ObjectNode, int] = {}
     if add_effects is None:
@@ -117,11 +120,11 @@ def draw_plan(
 ) -> Drawing:
     """Return the drawing of a plan in which items are used up; units are numbered from 1.
 
-    A node may have several copies. A copy is identified by its node and the position of the step that made
-    it, from 0. The position is ``None`` for the kitchen, and -1 if nothing makes the node.
+    A node may have several copies. The source of a copy is the position of the step that made it, from 0. The
+    source is ``None`` for the kitchen, and -1 if nothing makes the node.
 
-    ``sources``: for each unit, these positions by input; an input that is left out counts as ``None``.
-    ``goal_sources``: these positions by goal.
+    ``sources``: for each unit, the sources of its inputs; an input that is left out counts as ``None``.
+    ``goal_sources``: the sources of the goals.
 
     A copy is one box if a step makes it, and a later step or a goal takes it. A node that nothing makes is
     also one box. All other copies are separate boxes. Each goal has a box, also if no unit takes or makes it.
@@ -188,8 +191,8 @@ class _Canvas:
     def shared_box(self, node: ObjectNode, achiever: int | None = None) -> str:
         """Return the name of the one box of a node, which is added at the first call.
 
-        Its role is goal, kitchen item or object, the first that fits. With ``achiever``, it is the box of the
-        copy that the step at this position makes.
+        The role of the box is goal, kitchen item or object, the first that fits. With ``achiever``, the box
+        is for the copy that the step at this position makes.
         """
         if (node, achiever) not in self._names:
             role = Role.OBJECT

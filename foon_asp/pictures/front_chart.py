@@ -39,10 +39,10 @@ def write_front_chart(front: PlottedFront, file: Path) -> None:
     all its values are above 0 and the greatest is more than 50 times the least. Each point shows its value on
     the vertical axis.
 
-    A third objective divides the points into series, one for each of its values; a legend of its values then
-    replaces the values at the points. The third objective is the additive one with the fewest values. The
-    line of a series is the front of all points with at most the value of the series. An incomplete front has
-    no lines, since a line claims that no tree is beyond it.
+    A third objective divides the points into series, one for each of its values. Then points show no values,
+    and a legend shows the value of each series. The third objective is the additive one with the fewest
+    values. The line of a series is the front of all points with at most the value of the series. An
+    incomplete front has no lines, since a line claims that no tree is beyond it.
 
     Raises :class:`UserError` as :func:`foon_asp.pictures.chart.write_chart` does.
     """

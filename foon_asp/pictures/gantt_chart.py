@@ -57,8 +57,8 @@ def _draw_chart(gantt: Gantt, figure: "Figure", axes: "Axes") -> None:
 def _tick_times(makespan: Fraction) -> list[Fraction]:
     """Return the times of the ticks on the axis, in seconds from 0: at most nine.
 
-    Their interval is a round number of seconds, minutes, hours or days. If the makespan is at most 2 seconds,
-    their interval is a quarter of it.
+    If the makespan is at most 2 seconds, the ticks divide it into quarters. Otherwise their interval is a
+    round number of seconds, minutes, hours or days.
     """
     min_interval = makespan / 8  # more labels would overlap
     days = Fraction(86400 * (min_interval // 86400 + 1))

@@ -49,9 +49,9 @@ def layout_json(drawing: Drawing) -> dict[str, Any]:
 
 
 def network_coordinates(drawing: Drawing) -> dict[str, tuple[float, float]]:
-    """Return x and y of each box of the drawing of a network, by the name of the box, in pixels of the page.
+    """Return the coordinates x and y of each box of the drawing of a network, by the name of the box.
 
-    The layout is that of :func:`graph_text`, also for a small network.
+    They are in pixels of the page. The layout is that of :func:`graph_text`, also for a small network.
 
     Raises :class:`UserError` as :func:`svg_picture` does.
     """

@@ -13,7 +13,7 @@ from foon_asp.pictures.graphviz import svg_picture
 def picture_bundle(value: object, drawing: Drawing) -> dict[str, str]:
     """Return the MIME bundle of a value: its ``repr``, and the drawing as SVG.
 
-    If the picture cannot be drawn, the bundle has the text of the value as HTML in its place.
+    If the picture cannot be drawn, the text of the value as HTML replaces it.
     """
     try:
         return {"text/plain": repr(value), "image/svg+xml": svg_picture(drawing)}

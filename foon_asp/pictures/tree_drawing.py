@@ -10,10 +10,10 @@ from foon_asp.proof.simulation import Verdict, simulate
 
 
 def plan_drawing(problem: Problem, units: Sequence[FunctionalUnit], caption: str = "") -> Drawing:
-    """Return the drawing of a plan in which items are used up; its caption is a title and ``caption``.
+    """Return the drawing of a plan in which items are used up, under a title and ``caption``.
 
-    If ``caption`` is empty, the caption says whether the plan executes, and otherwise which node it lacks. It
-    also states the conditions and the number of units.
+    If ``caption`` is empty, another text replaces it. This text says whether the plan executes, or else which
+    node it lacks. It also states the conditions and the number of units.
     """
     replay = replay_for(problem, units)
     sources = [{copy.node: copy.made for copy in (*step.gone, *step.stayed)} for step in replay.steps]
@@ -39,9 +39,9 @@ def tree_drawing(
 ) -> Drawing:
     """Return the drawing of a task tree; its caption is a title and the lines of ``claim``.
 
-    ``claim`` says what is proved about the tree. Without it, the caption says whether the tree executes,
-    under which conditions, and how many units it has. Then units are numbered in an executable order, if one
-    exists. Otherwise they are numbered as in ``tree``.
+    ``claim`` says what is proved about the tree, whose units are then numbered as in ``tree``. Without a
+    claim, the caption says whether the tree executes, under which conditions, and how many units it has. Then
+    units are numbered in an executable order, if there is one.
     """
     units, lines = tree.units, [*claim]
     if not lines:

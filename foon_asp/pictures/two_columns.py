@@ -15,8 +15,9 @@ Row = tuple[Unit | None, Unit | None, Sequence[UnitDifference]]
 class PairSection(NamedTuple):
     """A section of the page: pairs of units under a heading.
 
-    A row is a unit of A, a unit of B, and their differences; a unit is ``None`` if it has no counterpart. A
-    ``folded`` section shows its rows only when the reader unfolds it. A section without rows is not shown.
+    A row is a unit of A, a unit of B, and their differences. If a unit has no counterpart, the other unit of
+    its row is ``None``. A ``folded`` section shows its rows only when the reader unfolds it. A section
+    without rows is not shown.
     """
 
     heading: str
@@ -107,8 +108,8 @@ def _unit_html(unit: Unit | None, marked: set[tuple[str, str | None]]) -> str:
 def _node_html(node: Node, role: str, marked: set[tuple[str, str | None]]) -> str:
     """Return the HTML of a node in one-line notation.
 
-    If the node itself, in its role of input or output, is in ``marked``, it is all bold. Otherwise the names
-    in it that are in ``marked`` are bold where they are whole words. Names of motions are not looked for.
+    ``role`` is ``input`` or ``output``. If ``marked`` has the node in this role, the whole text is bold.
+    Otherwise the marked names in the text are bold where they are whole words. Names of motions do not count.
     """
     text = str(node)
     if (role, text) in marked:

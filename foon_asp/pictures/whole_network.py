@@ -28,7 +28,7 @@ class WholeNetwork(Value, frozen=True):
         places: The coordinates x and y of each unit, and then of each object.
         kitchen: The positions of available objects.
         reachable: The positions of objects that are available or can be made.
-        possible: The positions of units that can be done with these.
+        possible: The positions of units that can be done with reachable objects.
     """
 
     objects: tuple[Node, ...]

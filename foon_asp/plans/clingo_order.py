@@ -12,8 +12,8 @@ def order_executions(
     """Return a plan that has the given executions in topological order.
 
     ``times`` has pairs of a unit number and its count. An execution is a unit number and its turn, from 1.
-    ``after`` has pairs of executions, each as four numbers: the second execution has to come before the
-    first. Among executions that are ready together, smaller ones come first.
+    ``after`` has pairs of executions, written as four numbers: the second execution comes before the first.
+    Among executions that are ready together, smaller ones come first.
     """
     predecessors: dict[tuple[int, int], set[tuple[int, int]]] = {
         (unit, turn): set() for unit, count in times for turn in range(1, count + 1)

@@ -17,8 +17,8 @@ class Measure(NamedTuple):
     ``costs``: the cost of each action, a whole number from 0.
     ``item``: the cost of each distinct endless item, and of each initial copy that is taken.
     ``exact``: a function from counts to their exact cost, if ``costs`` are rounded down; otherwise ``None``.
-    ``classes``: the class of each action, if ``costs`` are rounded. The exact cost depends only on the number
-    of executions in each class. Actions of class -1 do not change it.
+    ``classes``: if ``costs`` are rounded, the class of each action. Actions of a class have one exact cost.
+    Class -1 has the actions that do not change the exact cost of a plan.
     """
 
     costs: Sequence[int]
@@ -28,9 +28,9 @@ class Measure(NamedTuple):
 
 
 class Landmark(NamedTuple):
-    """The condition that one of some actions is executed, or an initial copy of an object is taken.
+    """The condition that an action of a set is executed, or that an initial copy of an object is taken.
 
-    ``members``: the actions.
+    ``members``: the set of actions.
     ``stock``: the objects of which an initial copy satisfies the condition.
     ``action``: the condition only applies if this action is executed; ``None`` if it always applies.
     ``objects``: the objects of the cut from which the landmark follows.
@@ -43,9 +43,9 @@ class Landmark(NamedTuple):
 
 
 class Balance(NamedTuple):
-    """The row of the state equation of an object: its initial and added copies suffice.
+    """The row of the state equation of an object: enough copies are initial or added.
 
-    They suffice for the copies that are consumed and those that have to remain of a goal.
+    They are enough for the copies consumed and, if the object is a goal, for those wanted in the end.
     """
 
     object: int
@@ -101,8 +101,9 @@ action counts once, however often it is executed."""
 class Level(NamedTuple):
     """The condition that a plan is as good as the incumbent, the best plan so far, by an objective.
 
-    Its costs by ``measure.costs`` have to add up to at most ``max_cost``. If these costs are rounded down,
-    its cost by ``measure.exact`` also has to be at most ``cost``, or below it if ``strict``.
+    The costs of its actions by ``measure.costs`` have to add up to at most ``max_cost``. If these costs are
+    rounded down, the exact cost of the plan also has to be at most ``cost``. If ``strict``, the exact cost
+    has to be below ``cost``.
     """
 
     measure: Measure

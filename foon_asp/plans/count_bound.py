@@ -1,8 +1,9 @@
 """Operator counting with the state equation: lower bounds on the cost of plans that consume objects.
 
-The counts of executions in a plan satisfy linear conditions (operator counting, Pommerening et al. 2014). Of
-every object, no more copies are consumed than exist, and the copies of targets remain. An executed action has
-achievers of its preconditions, if they are not initial. Landmarks of the delete relaxation hold as well.
+The counts of executions in a plan satisfy linear conditions (operator counting, Pommerening et al. 2014). No
+more copies of an object are consumed than exist, and the copies of targets remain. If an action is executed,
+each of its preconditions is initial or has an executed achiever. Landmarks of the delete relaxation hold as
+well.
 
 HiGHS solves the relaxations in floats. Bounds are recomputed in whole numbers, so that no float decides.
 """
@@ -48,11 +49,9 @@ class CountBound:
     ``limits``: limits on weighted sums, with weights from 0.
     ``derivation``: actions that reach the targets in the delete relaxation; landmarks are grown around them.
     ``levels``: plans that are worse than the incumbent by any level are excluded.
-    ``excluded_counts``: a plan is excluded if it executes all actions at least as often as one entry
-    says.
-    ``expired``: returns whether time is up; the methods then raise :class:`Stopped`.
-
-    ``proved`` is a lower bound on the cost of every plan by the first level; the methods raise it.
+    ``excluded_counts``: a plan is excluded if it executes all actions at least as often as one entry says.
+    ``expired``: a function that returns whether time is up; the methods then raise :class:`Stopped`.
+    ``proved``: a lower bound on the cost of every plan by the first level; the methods increase it.
     """
 
     def __init__(
@@ -80,10 +79,10 @@ class CountBound:
     def cheapest_counts_by_equation(self, measures: Sequence[Measure]) -> Counts | None:
         """Return counts of least cost, as far as floats tell, the first measure most important.
 
-        The counts are of a plan of the delete relaxation, as those of :meth:`cheapest_counts`. They are found
-        by the state equation, where few actions have indicators, which is much faster. Return ``None`` if no
-        counts are found. If items have costs or counts are excluded, return ``None`` without a search. The
-        rounded rows found for the first measure replace those known so far.
+        The counts are of a plan of the delete relaxation. The state equation finds them much faster than
+        :meth:`cheapest_counts`, since few actions have indicators. Return ``None`` if no counts are found. If
+        items have costs or counts are excluded, return ``None`` without a search. The rounded rows found for
+        the first measure replace those known so far.
         """
         if self._excluded_counts or any(measure.item for measure in measures):
             return None
@@ -106,10 +105,10 @@ class CountBound:
             self._stop_if_expired()
 
     def _assumed_caps(self, measure: Measure, assumed_cost: int | None) -> Sequence[int | None]:
-        """Return an upper bound on the count of each action in plans of up to an assumed cost.
+        """Return upper bounds on the counts of actions in plans that cost at most ``assumed_cost``.
 
-        Actions without cost get ``first_executions`` for each copy wanted. Indicators need such bounds. If no
-        cost is assumed, return an empty list.
+        The bound of an action without cost is ``first_executions`` for each copy wanted. If no cost is
+        assumed, return an empty list.
         """
         if assumed_cost is None:
             return ()
@@ -130,9 +129,9 @@ class CountBound:
         return equation
 
     def _add_violated(self, x: Sequence[float], equation: StateEquation) -> bool:
-        """Add a landmark, supply or remainder that a solution violates and the equation lacks, if any.
+        """Add a condition that a solution violates and the equation lacks; return whether there is one.
 
-        Return whether one was added.
+        It is a landmark, a supply or a remainder.
         """
         used = {a for a in range(self._action_count) if x[a] > INTEGRALITY}
         landmark = self._violated_landmark(used, set(), {})
@@ -153,10 +152,11 @@ class CountBound:
     def cheapest_counts(self, measures: Sequence[Measure], rounds: int = 30) -> Counts | None:
         """Return counts of least cost, as far as floats tell, the first measure most important.
 
-        Return ``None`` if HiGHS finds none. The counts are of a plan of the delete relaxation. There may be
-        no plan with these counts, and their optimality is not proved. Counts are searched up to ``rounds``
-        times, each time with a further landmark that the last counts violate. Each count is at most
-        ``first_executions`` for each copy wanted. If a count is that large, ``last_executions`` is tried.
+        Return ``None`` if HiGHS finds no counts. The counts are of a plan of the delete relaxation. There may
+        be no plan with these counts, and their optimality is not proved. The search is repeated up to
+        ``rounds`` times, each time with a further landmark that the last counts violate. Each count is at
+        most ``first_executions`` for each copy wanted. If a count is that large, ``last_executions`` is
+        tried.
         """
         counts = None
         most_copies_wanted = max(self._flows.targets.values(), default=1)
@@ -174,7 +174,8 @@ class CountBound:
     ) -> Counts | None:
         """Return counts of least cost like :meth:`cheapest_counts`, with no count above an assumed cap.
 
-        After the last round, the counts may still violate a landmark. Return ``None`` if HiGHS finds none.
+        After the last round, the counts may still violate a landmark. Return ``None`` if HiGHS finds no
+        counts.
         """
         counts: Counts | None = None
         for _ in range(rounds):
@@ -198,7 +199,7 @@ class CountBound:
     def _solve_relaxed(self, model: CountModel, objective: Mapping[int, int]) -> list[float] | None:
         """Add violated landmarks to the relaxation; return its solution if that is whole, else ``None``.
 
-        Indicators have to be whole only if counts are excluded.
+        If no counts are excluded, indicators need not be whole.
         """
         while True:
             self._stop_if_expired()
@@ -248,8 +249,9 @@ class CountBound:
     def prove(self, levels: Sequence[Level], is_better: Callable[[Counts], bool]) -> None:
         """Prove that no plan is better than the incumbent, the first level most important.
 
-        Counts that might be of a better plan are passed to ``is_better``. It returns whether some order of
-        them is a better plan. Raises :class:`BetterError` if so, and :class:`Stopped` if time is up.
+        ``is_better`` is called with counts that a better plan might have. It returns whether some order of
+        them is a better plan. Raises :class:`BetterError` if it returns true, and :class:`Stopped` if time is
+        up.
         """
         for i, level in enumerate(levels):
             earlier_levels, is_rounded = levels[:i], level.measure.exact is not None
@@ -264,7 +266,7 @@ class CountBound:
             )
 
     def visit_counts(self, levels: Sequence[Level], visit: Callable[[Counts], None]) -> None:
-        """Call ``visit`` with all counts that a plan as good as the incumbent by each level can have.
+        """Call ``visit`` with all counts that plans as good as the incumbent by each level can have.
 
         Costs of the last level have to be whole. Raises :class:`Stopped` if time is up.
         """
@@ -275,7 +277,8 @@ class CountBound:
         """Prove that there is no plan at all; counts of low cost by ``measure`` are tried first.
 
         ``is_better`` is called with counts, and returns whether some order of them is a plan. Raises
-        :class:`BetterError` if so, and :class:`Stopped` if nothing is proved. ``proved`` does not change.
+        :class:`BetterError` if it returns true, and :class:`Stopped` if nothing is proved. ``proved`` does
+        not change.
         """
         proved = self.proved
         try:
@@ -293,10 +296,11 @@ class CountBound:
     ) -> None:
         """Call ``is_better`` with all counts of cost up to ``max_cost``, by branch and bound.
 
-        If ``max_cost`` is ``None``, the cost has no limit. Only counts as good as the incumbent are
-        considered: by rounded costs for each level in ``earlier_levels``, and by exact costs for each of
-        ``levels``. Without ``earlier_levels``, ``proved`` is raised. Raises :class:`BetterError` if
-        ``is_better`` returns true, and :class:`Stopped` after too many nodes.
+        If ``max_cost`` is ``None``, the cost has no limit. Counts are omitted if they are worse than the
+        incumbent by the rounded costs of a level in ``earlier_levels``. They are also omitted if they are
+        worse by the exact costs of a level in ``levels``. Without ``earlier_levels``, ``proved`` is
+        increased. Raises :class:`BetterError` if ``is_better`` returns true, and :class:`Stopped` after too
+        many nodes.
         """
         if (
             max_cost is not None
@@ -332,9 +336,10 @@ class CountBound:
     def _equation_exceeds(self, measure: Measure, max_cost: int, earlier_levels: Sequence[Level]) -> bool:
         """Return whether the state equation proves that plans cost more than ``max_cost`` by a measure.
 
-        Only plans as good as the incumbent by the levels in ``earlier_levels`` are considered. The search
-        branches over counts, adds violated conditions, and gives up after ``equation_nodes`` nodes. Without
-        ``earlier_levels``, the first node raises ``proved``, and its rounded rows replace those known so far.
+        Plans that are worse than the incumbent by a level in ``earlier_levels`` are not considered. The
+        search branches over counts, adds violated conditions, and gives up after ``equation_nodes`` nodes.
+        Without ``earlier_levels``, the first node increases ``proved``, and its rounded rows replace those
+        known so far.
         """
         costs = {a: cost for a, cost in enumerate(measure.costs) if cost}
         caps = [max(max_cost, 0) // cost if cost else None for cost in measure.costs]
@@ -371,9 +376,10 @@ class CountBound:
                 return solved
 
     def _solve_node(self, model: CountModel, objective: Mapping[int, int], cutoff: float) -> Solved:
-        """Add violated landmarks at a node; return its relaxed solution, with ``x`` ``None`` if pruned.
+        """Add violated landmarks at a node; return its relaxed solution.
 
-        Raises :class:`Stopped` if the node is infeasible in floats, but not provably so.
+        If the node is infeasible or its bound is above ``cutoff``, ``x`` of the result is ``None``. Raises
+        :class:`Stopped` if the node is infeasible in floats, but not provably so.
         """
         while True:
             self._stop_if_expired()
@@ -408,8 +414,8 @@ class CountBound:
     def _probe_actions(self, model: CountModel, objective: Mapping[int, int], cutoff: int) -> None:
         """Find actions that cannot be executed twice at costs up to ``cutoff``, and bound their counts by 1.
 
-        This tightens the rows of their indicators. At most ``probes`` actions are tried, and only those whose
-        indicators are too small in the relaxed solution. Violated landmarks are added first.
+        At most ``probes`` actions are tried, and only those whose indicators are below 1 and below their
+        counts in the relaxed solution. Violated landmarks are added first.
         """
         program, probed = model.program, set[int]()
         while len(probed) < PLANS.probes:
@@ -499,9 +505,9 @@ class CountBound:
         """Return a landmark that the executed actions ``used`` violate; ``None`` if they violate no landmark.
 
         The executed actions are applied to the initial objects in the delete relaxation. If a target or an
-        executed action is not reached, the landmark has actions that would lead to it, none of them executed.
-        If initial copies have a cost, ``stock`` has their columns, and ``initial`` the objects of which
-        copies are taken. Otherwise, both are empty.
+        executed action is not reached, some action that was not executed has to lead to it. The landmark is
+        the set of such actions. If initial copies have a cost, ``stock`` has their columns, and ``initial``
+        the objects of which copies are taken. Otherwise, both are empty.
         """
         flows = self._flows
         asks, targets = flows.lacking(bool(stock))
@@ -521,7 +527,7 @@ class CountBound:
 
     @cached_property
     def _cutter(self) -> Cutter:
-        """The cutter of the targets in the delete relaxation, where initial copies cost nothing."""
+        """The :class:`Cutter` for the targets in the delete relaxation, where initial copies cost nothing."""
         flows = self._flows
         asks, targets = flows.lacking(priced=False)
         objects = {o for numbers in (*asks, *flows.adds, targets) for o in numbers}
@@ -531,7 +537,7 @@ class CountBound:
 
     @cached_property
     def _cutter_of_stock(self) -> Cutter:
-        """The cutter of the targets in the delete relaxation, where initial copies have a cost.
+        """The :class:`Cutter` for the targets in the delete relaxation, where initial copies have a cost.
 
         Its cuts have no initial object.
         """
@@ -545,9 +551,9 @@ class CountBound:
     def _separate(self, x: Sequence[float], model: CountModel, at_root: bool) -> bool:
         """Add landmarks of the targets that an LP solution violates; return whether there are any.
 
-        Landmarks avoid actions whose indicators have large values in the solution. At the root, further ones
-        are tried: for each action of the derivation, a landmark with none of its other actions. Without a
-        derivation, or if no actions reach the targets, no landmarks are sought.
+        Landmarks avoid actions whose indicators have large values in the solution. At the root, landmarks are
+        also tried that contain at most one action of the derivation. Without a derivation, or if no actions
+        reach the targets, no landmarks are sought.
         """
         derivation, action_count = self.derivation, self._action_count
         if not derivation:
@@ -578,11 +584,12 @@ class CountBound:
         used: set[int],
         stock: Mapping[int, int],
     ) -> Landmark:
-        """Return a landmark that no executed action satisfies, for an object that is not reached.
+        """Return a landmark that no executed action satisfies, for an object ``o`` that is not reached.
 
-        Its cut is grown from the object. It grows by a missing precondition of each executed action
-        (``used``) that would satisfy the landmark. ``asks`` has the preconditions of actions, ``reached`` the
-        objects reached, and ``stock`` the columns of initial copies.
+        Its cut is a set of objects, at first only ``o``. As long as an executed action (``used``) would
+        satisfy the landmark, a missing precondition of the action is added to the cut. ``asks`` has the
+        preconditions of actions, ``reached`` the objects reached, and ``stock`` the columns of initial
+        copies.
         """
         cut, stack, crossing = {o}, [o], dict[int, None]()
         while stack:
@@ -608,9 +615,10 @@ def _exact_cost(level: Level, counts: Mapping[int, int]) -> Fraction:
 
 
 def _bounds_around(program: WholeProgram, x: Sequence[float], columns: Sequence[int]) -> Iterator[Bounds]:
-    """Yield the bounds of child nodes that together exclude only a whole solution ``x``.
+    """Yield the bounds of child nodes that together exclude only the values of ``columns`` in ``x``.
 
-    They allow all whole values of the ``columns`` within the bounds of the program except those in ``x``.
+    ``x`` is a whole solution. All other whole values of the columns within the bounds of the program are
+    allowed.
     """
     lower, upper = list(program.lower), list(program.upper)
     for column in sorted(columns, key=lambda column: -x[column]):

@@ -118,10 +118,10 @@ class CountModel:
         return self._count_indicators[action, count][0]
 
     def unforced_count(self, counts: Counts, x: Sequence[float]) -> tuple[int, int, int] | None:
-        """Return an indicator of a count that is 0 in ``x`` although ``counts`` reach the count.
+        """Return an indicator that is 0 in ``x`` although ``counts`` reach its count.
 
-        It is given by its action, its count and its column. Return ``None`` if there is no such indicator.
-        Indicators of the count 1 are not looked at.
+        Only indicators of counts above 1 are considered. Return the action, the count and the column of the
+        indicator; ``None`` if there is no such indicator.
         """
         for (action, count), (column, _) in self._count_indicators.items():
             if action in counts and counts[action] >= count and not round(x[column]):
@@ -129,10 +129,10 @@ class CountModel:
         return None
 
     def _with_stock(self, o: int, row: dict[int, int], least: int) -> tuple[dict[int, int], int]:
-        """Return a row and its least sum, changed so that the initial copies of an object count.
+        """Return a row and its least sum, changed so that the initial copies of an object are included.
 
-        If the object has a column of initial copies, this column is added to the row. Otherwise, the copies
-        are subtracted from the least sum.
+        If the object has a column of initial copies, this column is added to the row. Otherwise, the number
+        of copies is subtracted from the least sum.
         """
         if o in self.stock:
             return {**row, self.stock[o]: 1}, least
@@ -141,7 +141,7 @@ class CountModel:
     def _add_classes(self, measure: Measure) -> None:
         """Add a column for each class of actions of a measure, equal to the sum of their counts.
 
-        Actions of class -1 have no column. :meth:`class_columns` returns the columns later.
+        Class -1 gets no column. The columns are kept for :meth:`class_columns`.
         """
         columns = []
         for number in sorted(set(measure.classes) - {-1}):
@@ -155,12 +155,15 @@ class CountModel:
     def class_columns(self, measure: Measure) -> list[int]:
         """Return the columns of the classes of a measure, ascending by class.
 
-        Raises ``KeyError`` if the measure has none: its costs are exact, or a cap is assumed.
+        Raises ``KeyError`` if the measure has no such columns: its costs are exact, or a cap is assumed.
         """
         return self._classes[id(measure)]
 
     def add_landmark(self, landmark: Landmark) -> None:
-        """Add the row of a landmark; add nothing if an initial copy without a column may satisfy it."""
+        """Add the row of a landmark.
+
+        Add nothing if an initial copy that has no column may satisfy the landmark.
+        """
         members, stock, action, _ = landmark
         if not self.stock.keys() >= set(stock):
             return
@@ -172,9 +175,10 @@ class CountModel:
         self.conditions[row_number] = landmark
 
     def tighten(self) -> None:
-        """Adapt the rows that force indicators up to 1 to the present upper bounds of counts.
+        """Adapt the rows that force an indicator to 1 if its action is executed.
 
-        The row of an indicator whose count has no upper bound is made empty.
+        Their coefficients are the present upper bounds of counts. If a count has no upper bound, its row is
+        made empty.
         """
         program = self.program
         for action, row in enumerate(self._indicator_rows):

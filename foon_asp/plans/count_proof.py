@@ -24,13 +24,16 @@ from foon_asp.plans.whole_program import INTEGRALITY, PARTS, Relaxation
 
 
 class Weighted(NamedTuple):
-    """A leaf of a proof: weights above 0 of conditions, which prove the bound for the counts of the leaf."""
+    """A leaf of a proof: conditions with weights above 0, which prove the bound for counts of the leaf."""
 
     weights: Sequence[tuple[Condition, Vector]]
 
 
 class Split(NamedTuple):
-    """A branching of a proof: one proof for values of a column up to ``max_count``, one for those above."""
+    """A branching of a proof over the value of a column.
+
+    ``up_to`` is the proof for values up to ``max_count``, and ``above`` the proof for greater values.
+    """
 
     column: int
     max_count: int
@@ -71,8 +74,8 @@ class PlanProver(CountBound):
     ) -> tuple[CountProof, Vector | None, Mapping[int, int]] | None:
         """Return a proof of a claim or of a weaker claim, the bound that it proves, and objects by column.
 
-        The bound is ``None`` if the claim is that there is no plan. The last value has the object of each
-        column for endless items or initial copies, if these have costs. Return ``None`` if nothing is proved.
+        The bound is ``None`` if the claim is that there is no plan. The objects are those of the columns of
+        endless items and initial copies, if these have costs. Return ``None`` if nothing is proved.
 
         The rounded rows known so far are replaced. ``measure`` is the objective of the claim. Plans that are
         worse than the incumbent by a level in ``kept_levels`` are excluded from the claim.
@@ -103,10 +106,10 @@ class PlanProver(CountBound):
         self._landmarks += landmarks
 
     def _prove_node(self, model: CountModel, depth: int) -> CountProof:
-        """Return the proof of a node of the branching, whose bounds of columns ``model`` has.
+        """Return the proof of a node of the branching; ``model`` has the bounds of columns at the node.
 
-        If the node proves less than the claim, the claim is lowered to the bound of the node. If it proves
-        nothing, ``_failed`` is set.
+        If the node proves less than the claim, the claim is lowered to the bound of the node. If the node
+        proves nothing, ``_failed`` is set.
         """
         program = model.program
         model.tighten()
@@ -132,7 +135,7 @@ class PlanProver(CountBound):
         return self._prove_split(model, *column, depth)
 
     def _prove_split(self, model: CountModel, column: int, max_count: int, depth: int) -> Split:
-        """Return a proof by branching on a column: for values above ``max_count``, and up to it.
+        """Return a proof by branching on a column: its values are above ``max_count``, or at most that.
 
         The bounds of the model are restored at the end.
         """
@@ -154,8 +157,8 @@ class PlanProver(CountBound):
     def _branching_column(self, model: CountModel, x: Sequence[float]) -> tuple[int, int] | None:
         """Return a column to branch on, and its maximum in the lower branch; ``None`` if all are whole.
 
-        A count whose indicator is too small for it comes first. Otherwise, the column is the one with the
-        most fractional value.
+        A count is chosen first if its indicator is below 1 and below the count. Otherwise, the column with
+        the most fractional value is chosen.
         """
         program, action_count = model.program, self._action_count
         for a in range(action_count):
@@ -174,9 +177,9 @@ class PlanProver(CountBound):
         return None if most_fractional is None else (most_fractional[1], math.floor(x[most_fractional[1]]))
 
     def _give_up(self, best: tuple[Vector, object] | None) -> None:
-        """Lower the claim to the bound of the ``best`` weights at a node, or note that nothing is proved.
+        """Lower the claim to the bound of the ``best`` weights at a node.
 
-        Nothing is proved if there are no such weights, or if the claim is that there is no plan.
+        If ``best`` is ``None``, or if the claim is that there is no plan, note that nothing is proved.
         """
         if self._least is None or best is None:
             self._failed = True
@@ -189,7 +192,7 @@ class PlanProver(CountBound):
         return bound if parts is None else tuple(Fraction(math.ceil(b * parts), parts) for b in bound)
 
     def _is_enough(self, bound: Vector) -> bool:
-        """Return whether a bound, rounded up, proves the claim, as far as it was lowered.
+        """Return whether a bound, rounded up, proves the claim as it is now (it may have been lowered).
 
         The claim that there is no plan is proved by a bound above 0.
         """
@@ -204,11 +207,11 @@ class PlanProver(CountBound):
         return Weighted([(model.conditions[row], weight) for row, weight in sorted(weights.items())])
 
     def _candidate_weights(self, model: CountModel, relaxed: Relaxation) -> "list[dict[int, Vector]]":
-        """Return candidates for the weights of rows, by row: rounded duals, and perhaps exact duals.
+        """Return candidates for the weights of rows, each a dictionary by row.
 
-        Exact duals are added if the relaxation is close to the claim and cannot be rounded up. If the
-        relaxation is infeasible, the only candidate is a Farkas combination, scaled to reach the claim; none
-        if no such combination is found.
+        They are rounded duals. Exact duals are added if the relaxation is close to the claim and cannot be
+        rounded up. If the relaxation is infeasible, the only candidate is a Farkas combination, scaled to
+        reach the claim. If no such combination is found, return an empty list.
         """
         claim = self._claim
         rates = claim.order.levels[0]
@@ -250,7 +253,7 @@ class PlanProver(CountBound):
         return {row: multiply(one, Fraction(n, parts)) for row, n in rounded.items() if n > 0}
 
     def _exact_weights(self, model: CountModel, relaxed: Relaxation) -> "list[dict[int, Vector]]":
-        """Return the exact duals of a basis, which make its reduced costs 0, as a list of one candidate.
+        """Return a list of one candidate: the exact duals of the basis of a relaxation.
 
         Return an empty list if the basis is singular. Weights that are not above 0 are omitted.
         """
@@ -277,7 +280,7 @@ class PlanProver(CountBound):
         return claim.item if column in self._columns else claim.order.zero
 
     def _bound(self, model: CountModel, weights: Mapping[int, Vector], free: bool = False) -> Vector | None:
-        """Return the bound that weights of rows prove for the current node; ``None`` if they prove none.
+        """Return the bound that weights of rows prove for the current node; ``None`` if they prove no bound.
 
         With ``free``, all costs are taken to be 0.
         """

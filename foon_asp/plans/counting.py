@@ -26,20 +26,20 @@ from foon_asp.problem.costs import Costs
 
 
 class _ManyError(Exception):
-    """Raised if orders of too many counts were searched, so that clingo has to search all counts at once."""
+    """Raised after too many searches for orders of counts; clingo then searches all counts at once."""
 
 
 class Counting:
     """The counts of executions of the units of a question, and the search for their order.
 
     Counts are by action: action ``a`` is the unit ``units[a]``. ``bound`` is the branch and bound over
-    counts. The incumbent is that of the question.
+    counts. The incumbent is the one of the question.
     """
 
     def __init__(self, question: PlanQuestion, units: list[int]) -> None:
         """Build the flows of units, given by id, and the bound on their counts under the question's rules.
 
-        Of the plans that the question excludes, those with other units are ignored.
+        The question may exclude plans. Those that have units not in ``units`` are ignored.
         """
         self._question, self._problem, self.units = question, question.problem, units
         self._measures: dict[Objective, Measure] = {}
@@ -83,9 +83,9 @@ class Counting:
     def _compute_measure(self, objective: Objective) -> Measure:
         """Return the measure of an objective over the units.
 
-        Costs are multiplied by a common factor. If this does not make them whole, they are rounded down,
-        items cost nothing, and the measure also has exact costs. If the objective multiplies rates, costs are
-        rounded logarithms, and the exact cost is the negative product of the rates.
+        Costs are multiplied by a common factor. If they are then not whole, they are rounded down, items cost
+        nothing, and the measure also has exact costs. If the objective multiplies rates, costs are rounded
+        logarithms, and the exact cost is the negative product of the rates.
         """
         row, unit_costs = objective.row, self._unit_costs(objective)
         if multiplies(objective):
@@ -131,8 +131,8 @@ class Counting:
     def _cost_scale(self, objective: Objective) -> Fraction:
         """Return the factor by which costs are multiplied before they are rounded down.
 
-        It makes all costs whole if the greatest cost is then at most ``exact_cost``. Otherwise, it makes the
-        greatest cost ``cost_steps``.
+        If possible, the factor makes all costs whole, and the greatest cost at most ``exact_cost``.
+        Otherwise, it makes the greatest cost ``cost_steps``.
         """
         unit_costs = self._unit_costs(objective)
         common = math.lcm(*(unit_cost.denominator for unit_cost in unit_costs))
@@ -140,7 +140,7 @@ class Counting:
         return Fraction(common) if common * greatest <= PLANS.exact_cost else PLANS.cost_steps / greatest
 
     def level(self, objective: Objective, costs: Costs) -> Level:
-        """Return the condition that a plan is as good as these costs by an objective."""
+        """Return the condition that a plan is at least as good as these costs by an objective."""
         return self._level_at(objective, Fraction(costs.measure(objective)))
 
     def _level_below(self, objective: Objective, cost: int | Fraction) -> Level:
@@ -169,8 +169,8 @@ class Counting:
     def prove(self) -> None:
         """Prove that no plan is better than the incumbent.
 
-        After many counts without a better plan, clingo searches all counts at once, if these have small
-        bounds. Raises :class:`BetterError` if a plan is better, which is then the incumbent. Raises
+        After many counts without a better plan, clingo searches all counts at once, if counts have small
+        bounds. If a plan is better, make it the incumbent and raise :class:`BetterError`. Raises
         :class:`Stopped` if nothing is proved.
         """
         assert self._question.best is not None
@@ -196,10 +196,9 @@ class Counting:
     def _split_costs(self, objective: Objective, plan: Plan) -> tuple[Fraction, list[Level]] | None:
         """Split costs that are too large for exact counting into two levels: the large costs and all others.
 
-        The first level has the large costs, as multiples of their greatest common divisor, the *step*. The
-        small costs of ``plan`` sum up to less than a step. So a plan with greater large costs is never
-        better. Return the step and the levels. Return ``None`` if costs need no such levels, or cannot be
-        split so.
+        The first level has the large costs, as multiples of the *step*, their greatest common divisor. All
+        other costs of ``plan`` add up to less than a step, so the first level decides first. Return the step
+        and the levels. Return ``None`` if costs need no such levels, or cannot be split in this way.
         """
         if multiplies(objective) or objective.row.item or self.measure(objective).exact is None:
             return None
@@ -224,8 +223,8 @@ class Counting:
     def prove_infeasible(self) -> bool:
         """Try all counts to prove that there is no plan; return whether it is proved.
 
-        If a plan is found, it becomes the incumbent, and the result is ``False``. Raises :class:`Stopped` if
-        nothing is decided.
+        If a plan is found, make it the incumbent and return ``False``. Raises :class:`Stopped` if nothing is
+        decided.
         """
         try:
             self.bound.prove_infeasible(self.measure(Objective.UNITS), self._is_better)
@@ -236,8 +235,8 @@ class Counting:
     def proved_bounds(self) -> dict[Objective, int | Fraction]:
         """Return the proved lower bound of the first objective, as a dictionary with this objective only.
 
-        It is empty if nothing is proved, or if the objective multiplies rates. Costs are rounded down, so a
-        bound on rounded costs is valid.
+        If nothing is proved, or if the objective multiplies rates, return an empty dictionary. Costs are
+        rounded down, so a bound on rounded costs is valid.
         """
         objective = self._question.levels[0]
         if self.bound.proved <= 0 or multiplies(objective):
@@ -248,9 +247,9 @@ class Counting:
     def _prove_with_clingo(self, level: Level) -> bool:
         """Try to prove with clingo that no plan is better; return whether it is proved.
 
-        Nothing is tried unless the counts of plans that satisfy ``level`` have small bounds, and all
-        objectives have whole costs. Raises :class:`BetterError` if a plan is better, which is then the
-        incumbent.
+        Return ``False`` without a search in two cases: counts of plans that satisfy ``level`` have no small
+        bounds, or an objective has costs that are not whole. If a plan is better, make it the incumbent and
+        raise :class:`BetterError`.
         """
         caps = [cap for cap in self.bound.max_counts(level) if cap is not None]
         if len(caps) < len(self.units) or sum(caps) > PLANS.clingo_executions:
@@ -263,7 +262,7 @@ class Counting:
         return run.exhausted and run.units is not None
 
     def _is_better(self, counts: Counts) -> bool:
-        """Search for an order of counts; make it the incumbent if it is a better plan; return whether it is.
+        """Return whether some order of counts is a better plan; if so, make it the incumbent.
 
         Raises :class:`_ManyError` if too many orders were sought since the proof began, unless amounts count.
         """
@@ -276,9 +275,9 @@ class Counting:
     def find_order(self, counts: Counts) -> Plan | None:
         """Return a plan that executes each action as often as counted; ``None`` if no such plan exists.
 
-        Such a plan keeps to the user's rules. clingo searches for it if amounts do not count, and either
-        ``kitchen`` is an objective or the other search decides nothing. Raises :class:`Stopped` if nothing is
-        decided.
+        The plan keeps to the user's rules. If amounts count, only a search over runs is tried
+        (:func:`bulk_order`). With the objective ``kitchen``, clingo searches for the plan. Otherwise, clingo
+        searches if the search over runs decides nothing. Raises :class:`Stopped` if nothing is decided.
         """
         if self._problem.counts_amounts:
             return self._bulk_plan(counts)
@@ -291,11 +290,11 @@ class Counting:
         return self._find_plan({a: (n, n) for a, n in counts.items()})
 
     def find_plan_beyond(self, counts: Counts) -> Plan | None:
-        """Search with clingo for the best plan with at most a few more executions per action than counted.
+        """Search with clingo for the best plan that executes actions up to a few times more than counted.
 
-        One more is tried first, then twice as many, up to ``extra_executions``. Return ``None`` if there is
-        no such plan, or if amounts count, since clingo does not count copies. Raises :class:`Stopped` if
-        clingo decides nothing.
+        First, each action may be executed once more than counted. This number is doubled up to
+        ``extra_executions``. Return ``None`` if there is no such plan. Also return ``None`` if amounts count,
+        since clingo does not count copies. Raises :class:`Stopped` if clingo decides nothing.
         """
         if self._problem.counts_amounts:
             return None
@@ -310,7 +309,7 @@ class Counting:
     def _bulk_plan(self, counts: Counts) -> Plan | None:
         """Return a plan with these counts, built from runs of one action each; ``None`` if none exists.
 
-        It keeps to the user's rules. With the objective ``kitchen``, it takes as few initial copies as
+        The plan keeps to the user's rules. With the objective ``kitchen``, it takes as few initial copies as
         possible. Raises :class:`Stopped` if nothing is decided.
         """
         flows, question = self._flows, self._question
@@ -364,7 +363,7 @@ class Counting:
         return run.units is not None
 
     def _find_plan(self, times: Mapping[int, tuple[int, int]], best: bool = False) -> Plan | None:
-        """Return a plan with counts within ``times``, found by clingo; ``None`` if none exists.
+        """Return a plan with counts within ``times``, found by clingo; ``None`` if no such plan exists.
 
         ``times`` has the least and greatest count of each action. With ``best``, the plan is the best one.
         Raises :class:`Stopped` if clingo does not decide it.

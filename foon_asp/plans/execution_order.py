@@ -1,8 +1,8 @@
 """Orders for given counts of executions, as runs that repeat one action each.
 
 Whether each action can be executed as often as counted is a question about firing sequences of a Petri net. A
-run executes an action as often as possible. The search does not branch over runs if one leaves enough copies
-for all executions that wait.
+run executes an action as often as possible. If a run leaves enough copies for all executions that wait, the
+search tries no other run.
 """
 
 from collections import Counter
@@ -22,9 +22,9 @@ def bulk_order(
 ) -> list[Run] | None:
     """Return runs that execute each action as often as counted; ``None`` if there is no such order.
 
-    ``start`` has the initial copies by object. ``expired`` returns whether time is up. Raises
-    :class:`Stopped` if the search finds no runs and does not prove that there are none. Runs are as long as
-    possible; if this finds no order of few executions, single executions are tried.
+    ``start`` has the initial copies by object. ``expired`` returns whether time is up. Runs as long as
+    possible are tried first. If they have no order, and there are few executions, single executions are
+    tried. Raises :class:`Stopped` if no order is found, but it is not proved that no order exists.
     """
     if not _may_have_order(flows, counts, start):
         return None
@@ -40,7 +40,7 @@ def bulk_order(
 
 
 def least_copies(flows: Flows, counts: Counts) -> dict[int, int]:
-    """Return how many initial copies of each object in ``flows.start`` every order needs at least."""
+    """Return how many initial copies of each object in ``flows.start`` are needed at least in every order."""
     change = Counter({o: -n for o, n in flows.targets.items()})
     required = Counter[int]()
     for action, times in counts.items():
@@ -57,8 +57,8 @@ def least_copies(flows: Flows, counts: Counts) -> dict[int, int]:
 def _may_have_order(flows: Flows, counts: Counts, start: Mapping[int, int]) -> bool:
     """Return whether counts satisfy two conditions that every order needs.
 
-    If nothing is consumed, each action can be executed. In the end, no number of copies is below 0, and those
-    of targets remain.
+    If nothing is consumed, each action can be executed. After all executions, no object has fewer than 0
+    copies, and each target has the copies wanted.
     """
     copies, waiting = Counter(start), set(counts)
     grown = True
@@ -135,10 +135,11 @@ class _OrderSearch:
         return tuple(sorted(self._waiting.items()))
 
     def _choices(self, dead: set[tuple[tuple[int, int], ...]]) -> Iterator[Run]:
-        """Yield the runs to try next; only one if it leaves enough copies for all waiting executions.
+        """Yield the runs to try next.
 
-        A run is as long as possible. With ``single``, a run that does not leave enough copies has one
-        execution. Nothing is yielded if the waiting executions are in ``dead``: they have no order.
+        A run is as long as possible. If a run leaves enough copies for all waiting executions, it is the only
+        one. Otherwise, with ``single``, each run has one execution. If the waiting executions are in
+        ``dead``, they have no order, and nothing is yielded.
         """
         if self._waiting_counts in dead:
             return
@@ -168,7 +169,7 @@ class _OrderSearch:
         return max_times
 
     def _is_free(self, action: int) -> bool:
-        """Return whether the objects that an action consumes have copies for all waiting executions."""
+        """Return whether all waiting executions have enough copies of the objects that an action consumes."""
         return all(
             self._copies[o] - self._consumed[o] >= self._copies_to_keep(o) for o in self._flows.uses[action]
         )
@@ -198,5 +199,5 @@ class _OrderSearch:
 
 
 def plan_of(units: Sequence[int], runs: Sequence[Run]) -> tuple[int, ...]:
-    """Return the units that runs execute, in order, with repeats; ``units`` has the unit of each action."""
+    """Return the units that runs execute, in order, with repeats; action ``a`` is ``units[a]``."""
     return tuple(unit for action, times in runs for unit in (units[action],) * times)

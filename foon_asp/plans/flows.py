@@ -14,9 +14,9 @@ class Flows:
     """Actions, numbered from 0, with preconditions and effects on copies of objects.
 
     ``asks``: for each action, the copies of objects that have to exist.
-    ``uses``: the copies that an execution consumes.
-    ``adds``: the copies that an execution makes.
-    ``items``: for each action, the preconditions that never run out. They are in none of the other maps.
+    ``uses``: for each action, the copies that an execution consumes.
+    ``adds``: for each action, the copies that an execution makes.
+    ``items``: for each action, the preconditions that never run out. No other attribute has them.
     ``start``: the initial copies by object.
     ``targets``: the copies of goals that have to remain.
     """
@@ -29,15 +29,13 @@ class Flows:
     targets: Mapping[int, int]
 
     def lacking(self, priced: bool) -> tuple[list[list[int]], list[int]]:
-        """Return the preconditions of each action, and the targets, that initial copies do not satisfy.
+        """Return the objects of preconditions, by action, and of targets that initial copies do not satisfy.
 
-        They are given as objects. If ``priced``, initial copies have a cost, and satisfy no precondition or
-        target. How many copies other actions add is ignored: in the delete relaxation, an action can be
-        executed again.
+        If ``priced``, initial copies have a cost, and satisfy no precondition or target.
         """
 
         def lacks(copies: Mapping[int, int]) -> list[int]:
-            """Return the objects of which more copies are asked for than are initial."""
+            """Return the objects with more copies asked for than initial; with ``priced``, all objects."""
             return [o for o, n in copies.items() if priced or n > self.start.get(o, 0)]
 
         return list(map(lacks, self.asks)), lacks(self.targets)
@@ -70,8 +68,8 @@ class Flows:
     def remainders(self) -> Iterator[Remainder]:
         """The remainders of objects.
 
-        An object has remainders if every action that asks for it leaves more copies than its target. It has
-        one for each such action; ``copies`` is the least number that one of them leaves.
+        An object has remainders if every action that asks for it leaves more copies than its target. There is
+        one for each such action. ``copies`` is the least number of copies that any of the actions leaves.
         """
         remaining_by_object: dict[int, dict[int, int]] = {}
         for action, preconditions in enumerate(self.asks):
@@ -86,8 +84,8 @@ class Flows:
     def copy_changes(self, condition: Supply | Remainder) -> dict[int, int]:
         """Return by how much each action changes the copies that a condition counts.
 
-        For a supply, these are the copies that other actions add. For a remainder, they are the net effects
-        of all actions. Actions without such a change are omitted.
+        A supply counts the copies that other actions add. A remainder counts the net effects of all actions.
+        Actions without such a change are omitted.
         """
         o, adds = condition.object, self.adds
         if isinstance(condition, Supply):
@@ -99,8 +97,9 @@ class Flows:
     def roles(self) -> Mapping[int, int]:
         """A number for the role of each object (colour refinement, Weisfeiler & Leman 1968).
 
-        Objects have one role if actions of one kind consume and add them in the same amounts. Actions are of
-        one kind if they do so with objects of the same roles. This is refined ``role_depth`` times.
+        At first, there are two roles: targets and other objects. Actions are of one kind if they consume and
+        add objects of the same roles in the same amounts. Objects keep a common role if actions of the same
+        kinds consume and add them in the same amounts. This is repeated ``role_depth`` times.
         """
         touched: dict[int, list[tuple[int, int]]] = {o: [] for o in self.targets}
         sides = [
@@ -132,7 +131,7 @@ class Flows:
 def flows_of(problem: Problem, units: Sequence[int]) -> Flows:
     """Return the preconditions, consumption and add effects of units; action ``i`` is ``units[i]``.
 
-    Object nodes that no unit among them needs are omitted, except goals. Nodes that never run out are only
+    Object nodes that no unit in ``units`` needs are omitted, except goals. Nodes that never run out are only
     in ``items``.
     """
     needed = {o for unit in units for o in problem.flows[unit].asks}.union(problem.goals)

@@ -17,9 +17,9 @@ def most_executions(
 ) -> dict[int, tuple[int, int]]:
     """Return bounds on the executions of each unit that can matter: ``(0, most)`` by unit id.
 
-    They hold of all plans with at most as many executions as the best plan that is found. If there is no
-    plan, every unit of the network has ``(0, 1)``. Raises :class:`UserError` if neither a best plan nor the
-    absence of plans is proved.
+    They hold for all plans with at most as many executions as the best plan. If there is no plan, every unit
+    of the network has ``(0, 1)``. Raises :class:`UserError` if neither a best plan nor the absence of plans
+    is proved.
     """
     question = PlanQuestion(problem, objectives, settings, Reporter())
     outcome = solve_question(question)

@@ -41,8 +41,9 @@ class PlanQuestion:
     ``bounds``: proved lower bounds by objective.
     ``limits``, ``restriction``: the rules that :meth:`apply_rules` understood.
     ``below``: pairs of an objective and a cost; a plan has to cost less than each.
-    ``incomparable``: counts of plans; a plan is excluded if it has at least all executions of one of them.
-    ``tree``: the units of some tree that makes the goals if items last; empty if none is known.
+    ``incomparable``: a list of counts. A plan is excluded if it executes every unit at least as often as one
+    entry says.
+    ``tree``: the units of some tree that makes the goals if items last; empty if no such tree is known.
     ``seconds``: the time of each phase by name, in seconds.
     """
 
@@ -82,8 +83,7 @@ class PlanQuestion:
     def apply_rules(self) -> bool:
         """Apply rules that remove units, require sets or limit sums; return whether they allow a plan.
 
-        The rules become ``limits`` and ``restriction``. Other rules are left to the search. Their analysis
-        assumes that each unit is executed once.
+        The rules become ``limits`` and ``restriction``. Other rules are left to the search.
         """
         rules = self.program.understood
         if rules is None:
@@ -96,7 +96,7 @@ class PlanQuestion:
 
     @property
     def required(self) -> tuple[frozenset[int], ...]:
-        """The sets of units of which rules require one."""
+        """The sets of units that rules require: a plan has a unit of each."""
         return () if self.restriction is None else self.restriction.required
 
     @property
@@ -109,8 +109,8 @@ class PlanQuestion:
         """Return the units that can matter, by id, ascending, and set ``tree`` to some tree of them.
 
         They are the achievers of goals and, recursively, of their preconditions. If rules may require
-        redundant units, they are all units that can execute. Return ``None`` if a goal, or a set that rules
-        require, cannot be reached even if items last.
+        redundant units, return all units that can execute. Return ``None`` if a goal cannot be reached even
+        if items last. Also return ``None`` if rules require a set of which no unit can execute.
         """
         problem = self.problem
         initial_nodes = frozenset(o for o in problem.kitchen if problem.stock_of(o) != 0)
@@ -133,8 +133,8 @@ class PlanQuestion:
     def has_no_lasting_tree(self) -> bool:
         """Return whether it is proved that rules allow no tree if items last, and so no plan.
 
-        The solver for items that last searches for such a tree. Without rules, return ``False`` without a
-        search. Also do so if rules read numbers of executions for more than upper bounds on these numbers.
+        The solver for items that last searches for such a tree. Return ``False`` without a search if there
+        are no rules. Do the same if rules use numbers of executions other than in upper bounds.
         """
         rules, problem = self.program.understood, self.problem
         if rules is None or not rules.only_limits:
@@ -145,7 +145,7 @@ class PlanQuestion:
         return solve_lasting(lasting_problem, (Objective.UNITS,), settings).status is Status.INFEASIBLE
 
     def try_incumbent(self, plan: Plan) -> bool:
-        """Make a plan the incumbent, and report it, if it is allowed and better; return whether it is so."""
+        """Make a plan the incumbent, and report it, if it is allowed and better; return whether it was."""
         costs = self.problem.costs(plan)
         if not self.allows(plan):
             return False
@@ -156,7 +156,7 @@ class PlanQuestion:
         return True
 
     def allows(self, plan: Plan) -> bool:
-        """Return whether a plan keeps to ``limits`` and ``below`` and is not excluded by ``incomparable``."""
+        """Return whether ``limits``, ``below`` and ``incomparable`` allow a plan."""
         counts, costs = Counter(plan), self.problem.costs(plan)
         if not all(row.holds(plan) for row in self.limits):
             return False

@@ -37,7 +37,7 @@ def solve_question(question: PlanQuestion) -> Outcome:
     """Return the outcome of a question: its best plan, as far as it is found and proved.
 
     An interrupt from the keyboard ends the search like the end of time, and is recorded in the deadline. If
-    statistics are asked for and clingo did not run, that is reported.
+    statistics are asked for and clingo did not run, the missing run is reported.
     """
     try:
         with question.deadline.watched("cutting the network", late=True):
@@ -69,10 +69,9 @@ def _solve(question: PlanQuestion) -> Outcome:
 def _search(question: PlanQuestion, units: list[int]) -> Outcome:
     """Search for the best plan of ``units``, and prove it; return the outcome.
 
-    First, counts of least cost are searched for, and then an order of them, which becomes the first
-    incumbent. If no plan is found so, the search tries to prove that no plan exists. With an incumbent,
-    counts of lower cost are searched until the incumbent is proved the best. Raises :class:`Stopped` if time
-    is up.
+    First, counts of least cost are searched for. An order of them becomes the first incumbent. If no plan is
+    found in this way, the search tries to prove that no plan exists. With an incumbent, counts of lower cost
+    are searched until the incumbent is proved the best. Raises :class:`Stopped` if time is up.
     """
     counting = Counting(question, units)
     if not units:  # every goal is available: only the empty plan is irredundant
@@ -123,8 +122,7 @@ def _executed_indices(units: Sequence[int], plan: Plan) -> list[int]:
 def _plan_by_equation(question: PlanQuestion, counting: Counting, measures: Sequence[Measure]) -> Plan | None:
     """Return a plan with the cheapest counts of the state equation, if they have an order.
 
-    Return ``None`` if there are no such counts, if no order of them is found that is allowed, or if the
-    search for an order decides nothing.
+    Return ``None`` if there are no such counts, or if no allowed order of them is found.
     """
     counts = counting.bound.cheapest_counts_by_equation(measures)
     try:
@@ -135,10 +133,10 @@ def _plan_by_equation(question: PlanQuestion, counting: Counting, measures: Sequ
 
 
 def _without_expensive_units(question: PlanQuestion, counting: Counting, plan: Plan) -> Counting:
-    """Return a :class:`Counting` without the units that alone cost more than a plan by the first objective.
+    """Return a :class:`Counting` without units that cost more than a whole plan by the first objective.
 
-    Its derivation is the plan. Return ``counting`` itself if costs are counted exactly, or if no unit or
-    every unit costs so much.
+    The plan becomes its derivation. Return ``counting`` itself if costs are counted exactly. Also return it
+    if no unit or every unit costs more than the plan.
     """
     objective = question.levels[0]
     if multiplies(objective) or counting.measure(objective).exact is None:

@@ -17,11 +17,11 @@ from foon_asp.problem import Costs, Objective, Problem
 class RankedPlans:
     """The plans of a question, the best first, under a lexicographic list of objectives.
 
-    A plan is excluded if it has at least all executions of an earlier one.
+    A plan is excluded if it executes every unit at least as often as an earlier plan.
 
     ``complete``: whether the iteration ended because there are no more plans.
-    ``pending``: if the iteration ended for another reason, a list of the best plan that was found and not
-    proved, with its costs. It is empty if there is no such plan.
+    ``pending``: if the iteration ended for another reason, a list with the best plan found and its costs.
+    This plan is not proved the best. The list is empty if no plan was found.
     """
 
     def __init__(
@@ -34,7 +34,7 @@ class RankedPlans:
         self.pending: list[tuple[Plan, Costs]] = []
 
     def __iter__(self) -> Iterator[tuple[Plan, Costs]]:
-        """Yield plans with their costs, each proved the best among the plans that contain no earlier one.
+        """Yield plans with their costs. Each is proved the best among the plans that contain no earlier one.
 
         Only the search for the first plan is reported. An empty plan is the last one, since every other plan
         contains it.
@@ -65,10 +65,10 @@ def best_plans(
 ) -> tuple[list[tuple[Plan, Costs]], bool, bool]:
     """Return a list of best plans, whether they are proved the best, and whether there are no others.
 
-    The list has at most ``max_plans`` plans with different counts of executions, each with its costs. Without
-    a proof that a plan is the best, it has the best plan found, if any. If it is proved that there is no
-    plan, the last value is true. It is false if time is up before all plans are found. Ctrl-C ends the search
-    in the same way, and is recorded in the deadline.
+    The list has at most ``max_plans`` plans with different counts of executions, each with its costs. If no
+    plan is proved the best, the list has the best plan found, if any. If it is proved that there is no plan,
+    the last value is true. If time is up before all plans are found, the last value is false. Ctrl-C ends the
+    search like the end of time, and is recorded in the deadline.
     """
     question = PlanQuestion(problem, objectives, settings, reporter)
     outcome = solve_question(question)
@@ -83,7 +83,7 @@ def best_plans(
     plans_by_counts = {frozenset(Counter(outcome.units).items()): outcome.units}
 
     def add_plan(counts: Counts) -> None:
-        """Add a plan with these counts to the result if some order of them is as good as the best plan.
+        """Add a plan with these counts to the result if some order of them is a plan as good as the best.
 
         Raises :class:`Stopped` once there are more than ``max_plans`` plans.
         """

@@ -1,8 +1,8 @@
 """The state equation alone, strengthened by mixed-integer rounding: bounds, and counts of least cost.
 
-The rows are about counts only, without indicators. A row of the inverse basis of the relaxation has weights
-for the rows. The weighted sum of the rows, rounded, is a row that a fractional solution violates (Gomory
-1958; Nemhauser & Wolsey 1990).
+The rows are about counts only, without indicators. A row of the inverse basis of the relaxation gives each
+row of the program a weight. The weighted sum of rows is then rounded to a row that a fractional solution
+violates (Gomory 1958; Nemhauser & Wolsey 1990).
 
 If ``sum a[j] x[j] >= b`` holds for counts from 0, and ``f`` is the fractional part of ``b``, then ``sum
 (floor(a[j]) + min(1, fraction(a[j]) / f)) x[j] >= ceil(b)`` holds, too. This is valid for any weights from 0,
@@ -33,7 +33,7 @@ _Row = tuple[dict[int, int], int]
 
 
 class RoundedProgram:
-    """A linear program over counts whose rows are sums of conditions, to which rounded rows are added.
+    """A linear program over counts, whose rows are sums of conditions; rounded rows can be added.
 
     ``expired`` returns whether time is up; solving then raises :class:`Stopped`.
     """
@@ -46,7 +46,7 @@ class RoundedProgram:
         ] = []  # of each row; empty if the row is about more than counts
 
     def add(self, conditions: Sequence[Condition], row: dict[int, int], least: int) -> None:
-        """Add a row, the sum of ``conditions``; a row without conditions takes no part in rounding."""
+        """Add a row, which is the sum of ``conditions``; a row without conditions is never rounded."""
         self.program.add_row(row, least)
         self._conditions.append(conditions)
 
@@ -59,7 +59,7 @@ class RoundedProgram:
                     yield condition, *self.program.row_of(number)
 
     def strengthen(self, costs: Mapping[int, int], cutoff: float | None = None) -> Solved:
-        """Add rounded rows while they raise the cost; return the last solution of the relaxation.
+        """Add rounded rows while they increase the cost; return the last solution of the relaxation.
 
         The search for rows ends at a proved bound above ``cutoff``. Without a cutoff, no bound is proved, and
         the bound of the result is -infinity. Raises :class:`Stopped` if time is up.
@@ -85,7 +85,7 @@ class RoundedProgram:
                 return solved
 
     def _add_rounded_rows(self, x: Sequence[float]) -> bool:
-        """Add the rounded rows that the last solution, ``x``, violates most; return whether there are any."""
+        """Add the rounded rows that the last solution ``x`` violates most; return whether there are any."""
         violated: dict[tuple[tuple[int, int], ...], tuple[float, Rounded, _Row]] = {}
         for floats in self.program.inverse_rows(x):
             for sign in (1, -1):
@@ -105,10 +105,10 @@ class RoundedProgram:
         return bool(violated)
 
     def _round_sum(self, weights: Mapping[int, Fraction]) -> tuple[Rounded, _Row] | None:
-        """Return the rounded sum of rows, by their weights: its condition, and its row in whole numbers.
+        """Return the rounded sum of rows with these weights: its condition, and its row in whole numbers.
 
-        Return ``None`` if rounding changes nothing, or if the row would have to be multiplied by too large a
-        number to become whole.
+        Return ``None`` if rounding changes nothing. Also return ``None`` if the row would have to be
+        multiplied by too large a number to become whole.
         """
         denominator = math.lcm(*(weight.denominator for weight in weights.values()))
         coefficients: dict[int, int] = {}
@@ -189,7 +189,7 @@ class StateEquation(RoundedProgram):
         self.add((level,), {a: -cost for a, cost in enumerate(costs) if cost}, -level.max_cost)
 
     def add_landmark(self, landmark: Landmark) -> None:
-        """Add the row of a landmark: a member is executed, or the landmark's action is not.
+        """Add the row of a landmark: a member is executed, or the landmark's action is not executed.
 
         Nothing is added if initial copies may satisfy the landmark, or if its action has no indicator.
         """
@@ -201,7 +201,7 @@ class StateEquation(RoundedProgram):
             self.add((), row, least)
 
     def add_copies(self, condition: Supply | Remainder) -> None:
-        """Add the row of copies that an action requires or leaves; nothing if the action has no indicator."""
+        """Add the row of a supply or remainder; add nothing if its action has no indicator."""
         indicator = self._indicator_column(condition.action)
         if indicator is not None:
             row = {**self._flows.copy_changes(condition), indicator: -condition.copies}
@@ -210,7 +210,7 @@ class StateEquation(RoundedProgram):
     def _indicator_column(self, action: int) -> int | None:
         """Return the column that is 1 if an action is executed; ``None`` if its count is unbounded.
 
-        The column and its row are added at the first call.
+        The first call for an action adds the column and its row.
         """
         max_count = self._caps[action]
         if action not in self._indicators and max_count is not None:
@@ -219,9 +219,10 @@ class StateEquation(RoundedProgram):
         return self._indicators.get(action)
 
     def strengthen(self, costs: Mapping[int, int], cutoff: float | None = None) -> Solved:
-        """Add rounded rows and return the last solution, as :meth:`RoundedProgram.strengthen`.
+        """Add rounded rows while they increase the cost; return the last solution of the relaxation.
 
-        Rows of a program in which objects of one role are merged come first (:meth:`_round_alternatives`).
+        Parameters and result are those of :meth:`RoundedProgram.strengthen`. The first rows come from a
+        smaller program that merges similar objects (:meth:`_round_alternatives`).
         """
         self._costs: Mapping[int, int] | None = costs
         return super().strengthen(costs, cutoff)
@@ -229,8 +230,8 @@ class StateEquation(RoundedProgram):
     def _add_rounded_rows(self, x: Sequence[float]) -> bool:
         """Add rounded rows that a solution violates; return whether there are any.
 
-        In the first call of a :meth:`strengthen`, rows of a program in which objects of one role are merged
-        are tried first.
+        The first call in :meth:`strengthen` tries rows of the program that merges similar objects before
+        others.
         """
         if all(abs(value - round(value)) < INTEGRALITY for value in x):
             return False  # whole counts violate no rounded row
@@ -238,12 +239,12 @@ class StateEquation(RoundedProgram):
         return (costs is not None and self._round_alternatives(costs)) or super()._add_rounded_rows(x)
 
     def _round_alternatives(self, costs: Mapping[int, int]) -> bool:
-        """Add rounded rows of a smaller program that merges objects of one role; return whether any is added.
+        """Add rounded rows of a smaller program that merges similar objects; return whether any is added.
 
-        A row of this program is the sum of the balances of all objects of one role, such as planks of any
-        wood. Actions that are alike in all rows and in cost share a column. If no actions share a column,
-        nothing is added. A row about a single object of many alternatives is weak, since the solution can use
-        another alternative.
+        Objects of one role (:attr:`Flows.roles`), such as planks of any wood, are merged: their balances are
+        added up to one row. A row about a single object would be weak, since a solution can use another one.
+        Actions that are alike in all rows and in cost share a column. If no actions share a column, nothing
+        is added.
         """
         roles = self._flows.roles
         sums: dict[object, tuple[list[Condition], dict[int, int], int]] = {}

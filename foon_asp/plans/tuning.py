@@ -1,4 +1,4 @@
-"""Numbers that steer the search for plans; they decide how fast something is proved, never what.
+"""Numbers that steer the search for plans: they change its time, and never make it prove a wrong result.
 
 Functions read :data:`PLANS` when they are called.
 """
@@ -9,26 +9,26 @@ from typing import NamedTuple
 class PlanTuning(NamedTuple):
     """When the searches for counts, orders and proofs end, and where they begin.
 
-    ``rounded_rows``: rows that are added for one solution of the state equation, at most.
-    ``stalled_rounds``: successive rounds of such rows that may leave the bound as it is.
+    ``rounded_rows``: at most this many rounded rows are added for a solution of the state equation.
+    ``stalled_rounds``: rounds of rounded rows in succession that may leave the bound as it is.
     ``role_depth``: rounds of refinement by which the roles of objects are told apart.
     ``rounding_denominator``: greatest denominator of the weights that rounded rows are made of.
     ``equation_nodes``: nodes of branch and bound over the state equation, before actions get indicators.
     ``probes``: actions for which it is tried, at the root, whether they can be executed twice.
     ``nodes``: nodes of branch and bound over counts, after which a proof is given up.
-    ``uncapped_nodes``: the same if nothing bounds the number of executions.
+    ``uncapped_nodes``: nodes after which it is given up if nothing bounds the number of executions.
     ``landmark_orders``: orders in which landmarks are grown before a search for violated ones ends.
     ``first_executions``: cap on the count of an action, for each copy wanted, when counts are looked for.
-    ``last_executions``: the same cap in a second attempt.
+    ``last_executions``: cap in the second attempt, if a count reaches the first cap.
     ``leaves``: leaves of a proof by branching, in a certificate.
-    ``depth``: depth of the branching in such a proof; its check is a recursion of the same depth.
-    ``order_steps``: runs that a search for an order tries; most orders take as many as there are actions.
+    ``depth``: depth of a proof by branching; its check is a recursion of the same depth.
+    ``order_steps``: runs that a search for an order tries; most orders need one run for each action.
     ``single_executions``: executions up to which every order is tried, one execution at a time.
     ``stocks``: choices of initial copies for which an order is looked for.
     ``unordered_counts``: counts without an order, after which clingo searches all counts at once.
-    ``clingo_executions``: executions in one such search.
+    ``clingo_executions``: executions in one search of clingo.
     ``exact_cost``: largest cost that is counted unrounded.
-    ``cost_steps``: whole number that the greatest cost becomes if costs are rounded.
+    ``cost_steps``: if costs are rounded, the whole number that the greatest cost becomes.
     ``extra_executions``: executions of a unit beyond its count, in the search of clingo for a first plan.
     """
 

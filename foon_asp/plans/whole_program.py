@@ -21,7 +21,8 @@ Bounds = tuple[list[int], list[int | None]]
 class Stopped(Exception):  # noqa: N818 (no error: there is no time left)
     """Raised if a search ends without a result.
 
-    Time is up, the search has taken too many steps, or solutions in floats decide nothing.
+    This is so if time is up, if the search has taken too many steps, or if solutions in floats decide
+    nothing.
     """
 
 
@@ -29,8 +30,8 @@ class Solved(NamedTuple):
     """The result of solving a relaxation.
 
     ``x``: the value of each column in floats; ``None`` if no solution is found.
-    ``bound``: a proved lower bound on the cost. It is infinity if it is proved that there is no solution, and
-    -infinity if nothing is proved. In the latter case, ``x`` may violate rows a little.
+    ``bound``: a proved lower bound on the cost; infinity if it is proved that there is no solution. If
+    nothing is proved, the bound is -infinity, and ``x`` may violate rows a little.
     """
 
     x: list[float] | None
@@ -61,7 +62,7 @@ def most_fractional(x: Sequence[float]) -> int | None:
 class WholeProgram:
     """An integer program to be minimized: columns with bounds, and rows. Both are numbered from 0.
 
-    ``lower``, ``upper``: the bounds of each column, which may be changed; ``None`` is no upper bound.
+    ``lower``, ``upper``: the bounds of each column, which may be changed; ``None`` for no upper bound.
     ``expired``: a function that returns whether time is up; solving then raises :class:`Stopped`.
 
     A row has whole coefficients of columns. It states that the weighted sum is at least a whole number.
@@ -105,9 +106,9 @@ class WholeProgram:
         return self.add_row(dict.fromkeys(columns, 0), least)
 
     def change_row(self, row: int, coefficients: dict[int, int]) -> None:
-        """Replace the coefficients of a row; columns of the row that are not in ``coefficients`` get 0.
+        """Replace the coefficients of a row; its columns that are not in ``coefficients`` get 0.
 
-        Columns that are not in the row are ignored.
+        Columns that the row does not have are ignored.
         """
         current = self._rows[row][0]
         new = {column: coefficients.get(column, 0) for column in current}
@@ -130,14 +131,15 @@ class WholeProgram:
         return lowers, uppers
 
     def set_bounds(self, bounds: Bounds) -> None:
-        """Set the bounds of columns; those of columns added after ``bounds`` were made do not change."""
+        """Set the bounds of columns; columns added after ``bounds`` were made keep theirs."""
         lower, upper = bounds
         self.lower[: len(lower)], self.upper[: len(upper)] = lower, upper
 
     def split_bounds(self, column: int, value: float) -> tuple[Bounds, Bounds]:
         """Return the bounds of two child nodes, for a column with a fractional value.
 
-        In the first, the column is at most the whole number below the value. In the second, it is above that.
+        In the first node, the column is at most the value rounded down. In the second, it is at least the
+        value rounded up.
         """
         below = math.floor(value)
         return self.with_bounds(column, None, below), self.with_bounds(column, below + 1, None)
@@ -164,9 +166,9 @@ class WholeProgram:
     def inverse_rows(self, x: Sequence[float]) -> Iterator[dict[int, float]]:
         """Yield rows of the inverse basis, for basic columns with a fractional value in ``x``.
 
-        ``x`` is the solution that was returned last. A row of the inverse basis is a dictionary of the
-        weights other than 0 of rows of the program, in floats. The most fractional column comes first.
-        Nothing is yielded if HiGHS has no basis.
+        ``x`` is the solution that was returned last. A row of the inverse basis is a dictionary of weights in
+        floats, by row of the program, without 0. The most fractional column comes first. If HiGHS has no
+        basis, nothing is yielded.
         """
         halves = {column: abs(value - math.floor(value) - 0.5) for column, value in enumerate(x)}
         fractional = {column: half for column, half in halves.items() if half < 0.5 - INTEGRALITY}
@@ -180,10 +182,10 @@ class WholeProgram:
             yield {row: float(weights[row]) for row in self._np.flatnonzero(weights).tolist()}
 
     def _nearly_feasible(self) -> list[float] | None:
-        """Return a solution that may violate rows a little; ``None`` if HiGHS finds none.
+        """Return a solution that may violate rows a little; ``None`` if HiGHS finds no solution.
 
-        The HiGHS instance is given up. Rows with large coefficients may leave so small a feasible region that
-        it is lost in floats.
+        This helps if rows with large coefficients leave a feasible region so small that floats miss it. The
+        HiGHS instance is given up.
         """
         highs, count = self._highs, len(self._rows)
         rows, infinite = self._np.arange(count, dtype="int32"), self._np.full(count, self._library.kHighsInf)
@@ -226,9 +228,10 @@ class WholeProgram:
     def whole_optimum(
         self, objective: Mapping[int, int], sufficient_cost: float = -math.inf
     ) -> list[float] | None:
-        """Return the optimal whole solution in floats; ``None`` if HiGHS finds none, or if time is up.
+        """Return the optimal whole solution in floats.
 
-        The search ends at the first solution that costs at most ``sufficient_cost``.
+        Return ``None`` if HiGHS finds no solution, or if time is up. The search ends at the first solution
+        that costs at most ``sufficient_cost``.
         """
         highs = self._update_highs(objective)
         count = self.column_count
@@ -301,9 +304,9 @@ class WholeProgram:
     ) -> float | Fraction:
         """Return the bound on the cost that weights of rows prove (Lagrangian relaxation).
 
-        Return -infinity if they prove nothing. The bound is computed in whole numbers, so any weights are
-        valid; those below 0 count as 0. Weights are rounded finely only if a coarse rounding proves no bound
-        above ``cutoff``.
+        If they prove no bound, return -infinity. The bound is computed in whole numbers, so it is valid for
+        any weights; weights below 0 count as 0. They are rounded coarsely first, and finely if no bound above
+        ``cutoff`` follows.
         """
         best: float | Fraction = -math.inf
         for denominator in PARTS:

@@ -35,7 +35,7 @@ def read_list(value: Any) -> list[Any]:
 
 
 def read_pair(value: Any, what: str) -> tuple[Any, Any]:
-    """Return the two entries of a list; raise :class:`RefusedError` for other values.
+    """Return the two entries of a list; raise :class:`RefusedError` unless it has exactly two.
 
     ``what`` names the list in the error.
     """

@@ -32,7 +32,7 @@ def read_stock(value: Any, kitchen: Collection[int]) -> dict[int, int]:
 
 
 def read_amounts(value: Any, subject: Subject) -> dict[int, tuple[dict[int, int], dict[int, int]]]:
-    """Return for each stated unit, by id, the amounts of its inputs and those of its outputs, by node id.
+    """Return the stated amounts by unit id: those of inputs and those of outputs, each by node id.
 
     Refuse a list that differs from the amounts of ``subject``. Amounts of units and nodes that the network
     does not have are ignored.
@@ -58,7 +58,7 @@ def read_amounts(value: Any, subject: Subject) -> dict[int, tuple[dict[int, int]
 
 
 def read_stays(value: Any, node_count: int) -> dict[str | int, bool]:
-    """Return whether labels, and nodes by id, stay when used, as a certificate states it.
+    """Return, for labels and for node ids, whether a certificate states that they stay when used.
 
     ``value`` has to be a list of pairs: first sorted labels, then ascending ids below ``node_count``.
     """

@@ -12,7 +12,7 @@ class CertificateLimits(NamedTuple):
         steps: Steps of the check. To look at a unit is one step; arithmetic takes more.
         steps_each: Additional steps for each unit and object node of the network.
         rules: Rules of a claim.
-        rule_steps: Steps that are counted for a rule, for each unit and object node of the network.
+        rule_steps: Steps counted for a rule, multiplied by the number of units and object nodes.
         digits: Characters of a fraction in the file.
         sum_bits: Bits of a sum of fractions.
         product_bits: Bits of a product of rates.

@@ -24,8 +24,8 @@ from foon_asp.proof.rule_meaning import ALL_STEPS, LIBRARY, OWN, Rule
 def read_rules(value: Any, unit_count: int) -> tuple[Rule, ...]:
     """Return the rules of a claim; refuse rules that are unknown, malformed, repeated or not sorted.
 
-    Claims about user rules count as a rule; only their form is checked. ``unit_count`` is the number of
-    units of the network. Raises :class:`CheckLimitError` if there are more rules than
+    The claims about user rules are one rule of the list; only their form is checked. ``unit_count`` is the
+    number of units of the network. Raises :class:`CheckLimitError` if there are more rules than
     :class:`CertificateLimits` allows.
     """
     rules = [read_object(rule) for rule in read_list(value)]
@@ -83,8 +83,8 @@ def _check_user_rules(rule: Rule, unit_count: int) -> None:
 
 
 def trusted_claims(certificate: Mapping[str, Any]) -> Rule | None:
-    """Return the rule of a certificate that has its claims about user rules, which are taken on trust.
+    """Return the claims of a certificate about user rules, as one rule.
 
-    Return ``None`` if it has no such claims.
+    The claims are taken on trust. Return ``None`` if the certificate has no such claims.
     """
     return next((rule for rule in certificate.get("rules", ()) if rule["rule"] == OWN), None)

@@ -38,8 +38,8 @@ class Subject(NamedTuple):
     def digests(self, rules: Iterable[Rule] = ()) -> dict[str, str]:
         """Return the SHA-256 digests of the data, by name, as a certificate with these rules states them.
 
-        A digest in ``stated`` is returned as it is. The digest of sources covers only what the rules read of
-        them.
+        A digest in ``stated`` is returned as it is. The digest of sources covers only the parts of sources
+        that the rules read.
         """
         return {
             name: self.stated.get(name) or digest_of(value())

@@ -30,10 +30,11 @@ class CompiledRules:
 
     ``removed``: it has no unit of this set.
     ``goals``: it makes each new node of this list.
-    ``limits``: it keeps to each limit, by number. The limit by ``max_sum`` of a meaning has the number of its
-    constraint. The limits in ``limits`` of meanings are numbered after all constraints.
+    ``limits``: it keeps to each limit. A limit by ``max_sum`` of a :class:`Meaning` has the number of the
+    constraint. Limits in ``limits`` of a meaning have numbers after those of all constraints.
     ``never``: this set is empty. It has the numbers of constraints that no tree satisfies.
-    ``barred``: it has no unit that these functions return, by number of the constraint (:class:`Meaning`).
+    ``barred``: it has no unit that a function of this dictionary returns (:class:`Meaning`). The keys are the
+    numbers of the constraints.
 
     ``gives`` and ``needs`` map a unit to the new nodes that it makes and needs. ``steps`` maps a step to its
     preconditions and its node. ``makers`` maps a new node to the units and steps that make it.
@@ -124,10 +125,10 @@ class CompiledRules:
             self.makers[node].append(unit)
 
     def _counting_member(self, units: Units) -> int:
-        """Return the number of a unit or step that a tree has once if it has a unit of the set.
+        """Return a unit or step, by number, that a tree has if and only if it has a unit of the set.
 
-        If the set has one unit, it is this unit. Otherwise it is a new step, whose node all units of the set
-        need.
+        If the set has one unit, return this unit. Otherwise, add a step and return its number. All units of
+        the set then need the node that the step makes.
         """
         if len(units) == 1:
             (only,) = units

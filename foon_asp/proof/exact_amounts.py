@@ -80,8 +80,8 @@ class AmountArithmetic:
     def sign(self, amount: Amount) -> Fraction | int:
         """Return a number with the exact sign of an amount.
 
-        The part for the most important objective that is not 0 decides. If all parts are 0, return 0. By
-        ``success``, the work counts as steps of the check, and :class:`CheckLimitError` may be raised.
+        The part for the most important objective that is not 0 decides. If all parts are 0, return 0. For the
+        objective ``success``, the work counts as steps, and :class:`CheckLimitError` may be raised.
         """
         for level, objective in enumerate(self.objectives or (UNMEASURED,)):
             if objective == "success":
@@ -95,11 +95,10 @@ class AmountArithmetic:
     def _minus_log_sign(self, exponents: Mapping[Fraction, Fraction]) -> Fraction | int:
         """Return a number with the sign of the sum of ``e * -log(rate)`` over ``exponents``, exactly.
 
-        Bounds of the logarithms decide if they can. Otherwise, exponents are multiplied by their common
-        denominator. The product of all ``rate ** e`` is then a quotient of whole numbers, and is compared
-        with 1. The sign is positive if the product is below 1. Raises :class:`CheckLimitError` if the
-        product is too long. If the rate 0 has an exponent, the sign of this exponent decides, since
-        ``-log(0)`` is infinite.
+        Bounds of the logarithms decide if they can. Otherwise, all exponents are made whole by a common
+        factor, and the product of all ``rate ** e`` is compared with 1. The sign is positive if the product
+        is below 1. If the rate 0 has an exponent, the sign of this exponent decides, since ``-log(0)`` is
+        infinite. Raises :class:`CheckLimitError` if the product is too long.
         """
         if zero_exponent := exponents.get(Fraction(0)):
             return zero_exponent
@@ -127,10 +126,9 @@ class AmountArithmetic:
     def _minus_log(self, rate: Fraction) -> tuple[Fraction, Fraction]:
         """Return bounds of ``-log(rate)`` from below and above.
 
-        Python's decimal logarithm is correctly rounded, so it is off by less than one unit of its last digit.
-        For a rate near 1, the logarithms of denominator and numerator share their first digits. So one more
-        digit is computed for each three bits that they share, and at most 400 more. The work counts as steps
-        of the check, so :class:`CheckLimitError` may be raised.
+        Python's decimal logarithm is off by less than one unit of its last digit. For a rate near 1, the
+        logarithms of denominator and numerator are nearly equal, so up to 400 more digits are computed. The
+        work counts as steps of the check, so :class:`CheckLimitError` may be raised.
         """
         shared = (rate.denominator.bit_length() - (rate.denominator - rate.numerator).bit_length()) // 3
         decimal_context = Context(prec=50 + min(shared, 400))

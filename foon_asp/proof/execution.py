@@ -29,8 +29,8 @@ class Executions:
     """Executions of units from the kitchen of a problem.
 
     ``of(unit)`` returns the :class:`Execution` of a unit; results are cached. If items are used up, the
-    problem says which inputs of a unit stay. If items last, the rule of docs/plans.md says it, and every
-    amount is 1.
+    problem says which inputs of a unit stay. If items last, the rule of docs/plans.md says which inputs stay,
+    and every amount is 1.
     """
 
     def __init__(self, problem: Problem) -> None:

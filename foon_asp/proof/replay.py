@@ -55,8 +55,8 @@ class Replay(NamedTuple):
     ``steps``: the steps that ran, in order.
     ``shortage``: the shortage that stopped the replay; ``None`` if the plan runs and makes the goals.
     ``left``: the consumable copies that exist after the last step, from the stock or made by steps.
-    ``stock``: for each node with a finite stock, the number of initial copies that the plan needs. The step
-    that lacks copies is included.
+    ``stock``: for each node with a finite stock, the number of initial copies that the plan needs. If a step
+    lacks copies, the copies that it needs are included.
     """
 
     steps: tuple[Step, ...]
@@ -77,8 +77,8 @@ def replay_for(problem: Problem, plan: Iterable[FunctionalUnit]) -> Replay:
 def replayable_problem(problem: Problem, plan: Iterable[FunctionalUnit]) -> Problem:
     """Return a problem whose items are used up, so that :func:`replay_for` can replay a plan.
 
-    If this holds of ``problem``, return it as it is. Otherwise, return a copy in which items are used up, but
-    those with the label of an input of the plan stay.
+    If items of ``problem`` are used up, return it as it is. Otherwise, return a copy in which items are used
+    up. In the copy, items with the label of an input of the plan stay.
     """
     if problem.items is not None:
         return problem
@@ -89,8 +89,9 @@ def replayable_problem(problem: Problem, plan: Iterable[FunctionalUnit]) -> Prob
 def predecessors(replay: Replay) -> Iterator[set[int]]:
     """Yield for each step, in order, the positions of the earlier steps that have to be done before it.
 
-    To *read* a copy is to need it and not to use it up. Such an earlier step made a copy that the step needs,
-    or it read a copy that the step uses up. Endless nodes cause no order, since another copy always exists.
+    To *read* a copy is to need it and not to use it up. An earlier step has to come first in two cases. It
+    made a copy that the step needs, or it read a copy that the step uses up. Endless nodes cause no order,
+    since another copy always exists.
     """
     readers: dict[tuple[Copy, int], set[int]] = {}
     spent: Counter[Copy] = Counter()  # how often an equal copy was used up
@@ -106,10 +107,10 @@ def predecessors(replay: Replay) -> Iterator[set[int]]:
 
 
 def shared_readers(replay: Replay, is_free: Callable[[str], bool]) -> list[tuple[int, ...]]:
-    """Return, for each copy that two or more steps read, their positions, ascending.
+    """Return, for each copy that two or more steps read, the positions of its readers, ascending.
 
-    To *read* a copy is to need it and not to use it up. Copies of endless nodes are omitted: the kitchen has
-    them, and the stock does not count them. Copies with a label that ``is_free`` accepts are omitted as well.
+    To *read* a copy is to need it and not to use it up. Endless nodes, which the kitchen has and the stock
+    does not count, are omitted. Nodes with a label that ``is_free`` accepts are omitted as well.
     """
     readers: dict[tuple[Copy, int], list[int]] = {}
     spent: Counter[Copy] = Counter()  # as in predecessors
@@ -122,10 +123,10 @@ def shared_readers(replay: Replay, is_free: Callable[[str], bool]) -> list[tuple
 
 
 def _numbered_reads(step: Step, spent: Counter[Copy]) -> Iterator[tuple[Copy, int]]:
-    """Yield each copy that a step needs and does not use up, with a number that tells it from its equals.
+    """Yield each copy that a step needs and does not use up, with a number that tells equal copies apart.
 
-    Copies are equal if node and maker are equal. Among equal copies, those that earlier steps used up, which
-    ``spent`` counts, have the first numbers, from 0. Those that this step uses up have the next ones.
+    Copies are equal if node and maker are equal. Numbers of equal copies begin at 0. Copies that earlier
+    steps used up (``spent``) have the first numbers, copies that this step uses up the next ones.
     """
     next_numbers = spent + Counter(step.gone)
     for copy in step.stayed:
@@ -200,7 +201,7 @@ class _Kitchen:
     def _has_copies(self, node: ObjectNode, amount: int) -> bool:
         """Return whether ``amount`` copies of a node exist.
 
-        Also raise the number of initial copies that the plan needs of the node, if its stock is finite.
+        Also increase the number of initial copies that the plan needs of the node, if its stock is finite.
         """
         if self._endless_copy(node):
             return True
@@ -222,5 +223,8 @@ class _Kitchen:
         return [self._copies[node].popleft() for _ in range(amount)]
 
     def _shortage(self, step: int | None, node: ObjectNode, amount: int) -> Shortage:
-        """Return the shortage of a node of which a step needs ``amount`` copies, with consumers so far."""
+        """Return the shortage of a node of which a step needs ``amount`` copies.
+
+        Its consumers are the steps that used up copies of the node so far.
+        """
         return Shortage(step, node, tuple(self._consumers_of.get(node, ())), amount)

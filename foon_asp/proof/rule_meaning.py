@@ -27,8 +27,8 @@ class Question(NamedTuple):
     ``utensils``: the labels of utensils.
     ``rate``: a function that returns the success rate of a unit; ``None`` if unknown.
     ``price``: a function that returns the price of a unit; ``None`` if unknown.
-    ``needs``, ``gives``: functions that return the preconditions and the add effects of a unit. They are
-    nodes, or ``None`` for a node that is not in the network.
+    ``needs``, ``gives``: functions that return the preconditions and the add effects of a unit, as node ids.
+    ``None`` stands for a node that is not in the network.
     """
 
     network: Network
@@ -182,7 +182,10 @@ def _matching_source_names(network: Network, unit: int, allowed: list[str]) -> s
 
 
 def _only_sources(question: Question, allowed: list[str]) -> Meaning:
-    """Return a meaning that removes the units of which no source has its path, file name or video allowed."""
+    """Return a meaning that removes the units without an allowed source.
+
+    A source is allowed if ``allowed`` has its path, its file name or its video address.
+    """
     network = question.network
     return Meaning(
         frozenset(u for u in range(len(network)) if not _matching_source_names(network, u, allowed))
@@ -205,9 +208,9 @@ def _at_least_videos(question: Question, least_videos: int) -> Meaning:
 
 
 def _motion_only_with(question: Question, tied_motion: str, tied_utensil: str) -> Meaning:
-    """Return a meaning that removes the units with the motion that do not touch the utensil.
+    """Return a meaning that removes the units with the motion but without the utensil.
 
-    A unit touches it if an input or output has its label.
+    A unit has the utensil if an input or output has its label.
     """
     return Meaning(question.with_motion(tied_motion) - question.touching(question.labelled(tied_utensil)))
 
@@ -244,8 +247,8 @@ def _require_ingredient(question: Question, required_ingredient: str) -> Meaning
 def _require_intermediate(question: Question, required_intermediate: str) -> Meaning:
     """Return a meaning that requires that an object of this label is made and used.
 
-    For at least one node of the label that the kitchen does not have, the tree has a unit that needs it, and
-    another that makes it and does not need it.
+    The tree has to make and to use at least one node of the label that the kitchen does not have. One unit
+    needs this node. Another unit makes it and does not need it.
     """
     network = question.network
     alternatives = []
@@ -314,10 +317,10 @@ def _not_both_motions(question: Question, one_motion: str, other_motion: str) ->
 def _before(question: Question, earlier_motion: str, later_motion: str) -> Meaning:
     """Return a meaning that bars units with the later motion that cannot come after the earlier motion.
 
-    On a branch of a proof, some units are used and others excluded. Nodes that the used units can make
-    without the earlier motion, and kitchen nodes, are *early*. Other nodes are *late* if a unit that is not
-    excluded makes them, and has the earlier motion or needs a late node. A unit with the later motion is
-    barred if it needs no late node. If both motions are equal, no unit is barred.
+    On a branch of a proof, some units are used and others excluded. A node is *early* if it is in the
+    kitchen, or if the used units can make it without the earlier motion. Another node is *late* if a unit
+    that is not excluded makes it, and has the earlier motion or needs a late node. A unit with the later
+    motion is barred if it needs no late node. If both motions are equal, no unit is barred.
     """
     network, needs, gives = question.network, question.needs, question.gives
     with_earlier = question.with_motion(earlier_motion)
@@ -354,9 +357,9 @@ OWN = "own"  # in place of a constraint's name: user rules
 def meaning_of_user_rules(rule: Rule) -> Meaning:
     """Return the meaning of claims about user rules, which a certificate takes on trust.
 
-    A claim is a pair of sets of units: no tree has all units of the first and none of the second. If it has
-    one unit and an empty second set, this unit is removed. If its first set is empty, a unit of the second is
-    required. ``rule`` also has limits on sums of amounts.
+    A claim is a pair of sets of units: no tree has all units of the first and none of the second. If the
+    first set has one unit and the second is empty, this unit is removed. If the first set is empty, a unit of
+    the second is required. Other claims bar units. ``rule`` also has limits on sums of amounts.
     """
     claims = [(frozenset(used), frozenset(without)) for used, without in rule["claims"]]
     removed = [used for used, without in claims if len(used) == 1 and not without]
@@ -366,8 +369,8 @@ def meaning_of_user_rules(rule: Rule) -> Meaning:
     def barred(used: Units, without: Units) -> Units:
         """Return the units that claims bar (unit propagation).
 
-        A claim bars units only if all units of its second set are excluded. If exactly one unit of its first
-        set is not used, it bars this unit. If all of them are used, it bars them all.
+        A claim bars units only if all units of its second set are excluded. If all units of its first set but
+        one are used, the claim bars this one. If all of them are used, it bars the whole first set.
         """
         unused = [used_together - used for used_together, excluded in barring_claims if excluded <= without]
         broken = [

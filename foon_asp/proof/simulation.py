@@ -27,8 +27,9 @@ class Obstacle(NamedTuple):
 
     ``unit``: the position of the unit in the tree, from 0. ``None`` if every unit runs and a goal is missing.
     ``missing``: the input or goal that is not available.
-    ``cycle``: positions of units in a cycle that ``unit`` waits for. Each needs an output of the next, and
-    the last one of the first. If it is empty, ``unit`` depends on an input that no unit makes.
+    ``cycle``: positions of units in a cycle that ``unit`` waits for. Each unit needs an output of the next,
+    and the last unit needs an output of the first. If it is empty, ``unit`` depends on an input that no unit
+    makes.
     ``used_up_by``: in a plan, the positions of the steps that used up copies of ``missing``.
     ``amount``: in a plan, the number of copies needed.
     """
@@ -140,8 +141,9 @@ def _waiting_cycle(
 ) -> tuple[int, ...]:
     """Return a cycle of waiting units, by position, that keeps the first waiting unit from running.
 
-    A unit waits for the waiting units that make one of its unavailable inputs. Without such a cycle, return
-    an empty tuple. ``needs`` and ``gives`` have the preconditions and add effects of each unit, by position.
+    A unit waits for each waiting unit that makes an unavailable input of it. Return an empty tuple if there
+    is no such cycle. ``needs`` and ``gives`` have the preconditions and add effects of each unit, by
+    position.
     """
     makers: dict[ObjectNode, list[int]] = {}
     for position in waiting:

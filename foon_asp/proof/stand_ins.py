@@ -19,7 +19,7 @@ Sides = Callable[[int], Collection[int | None]]  # from a unit to ids of nodes
 class Actions(NamedTuple):
     """The kitchen, and functions from a unit to its preconditions (``needs``) and add effects (``gives``).
 
-    All are ids of nodes; ``None`` is a node that is not in the network.
+    Nodes are given by id; ``None`` stands for a node that is not in the network.
     """
 
     kitchen: Collection[int]
@@ -30,10 +30,9 @@ class Actions(NamedTuple):
 class StandInClaim(NamedTuple):
     """The part of a certificate's claim that concerns stand-ins.
 
-    ``by_dissimilarity``: whether dissimilarity is the first objective, or there are no objectives, and there
-    are no rules.
-    ``bound``: the claimed lower bound on the dissimilarity of trees. ``None`` if nothing is claimed of it, or
-    if the claim is that there is no tree.
+    ``by_dissimilarity``: ``True`` if there are no rules, and the first objective, if any, is dissimilarity.
+    ``bound``: the claimed lower bound on the dissimilarity of trees. ``None`` if the claim has no such bound,
+    or if the claim is that there is no tree.
     """
 
     by_dissimilarity: bool
@@ -43,8 +42,9 @@ class StandInClaim(NamedTuple):
 def stand_in_price_data(table: StandInTable) -> list[list[str]]:
     """Return the prices of a table as sorted lists of texts, for the digest of a certificate.
 
-    A list has an edit, an edit and its word, or a pair of labels or nodes. A pair comes after the text
-    ``label`` or ``node``. The price is last, ``None`` for a difference that is forbidden.
+    There are four kinds of lists: an edit and its price; an edit, a word and its price; ``label``, two labels
+    and their price; ``node``, two nodes and their price. The price is ``None`` if the table forbids the
+    difference.
     """
     edits = [[str(edit), str(price)] for edit, price in table.edits.items()]
     words = [[str(edit), word, str(price)] for (edit, word), price in table.words.items()]
@@ -101,12 +101,14 @@ def stand_in_fault(
     """Return in words the first fault of the stand-ins of a network; ``None`` without one.
 
     A node is *free* if it is in the kitchen or can be made without stand-ins. Each stand-in of the network
-    must have a price above 0 by the table, and serve a node that is not free. Also, the network must have a
-    stand-in for each pair of nodes with a price of which the served node is not free.
+    must have a price above 0 by the table, and serve a node that is not free. The table also gives a price to
+    pairs of nodes. Each pair whose served node is not free must have a stand-in.
 
-    If the claim is by dissimilarity, a stand-in may be missing in three cases. No tree needs the served node.
-    The serving node costs more than the cheapest free node that could serve. Every tree with the stand-in has
-    a dissimilarity above ``claim.bound``.
+    If the claim is by dissimilarity, this stand-in may be missing in three cases:
+
+    - No tree needs the served node.
+    - The serving node costs more than the cheapest free node that could serve.
+    - Every tree with the stand-in has a dissimilarity above ``claim.bound``.
 
     ``goals`` are the nodes, by id, that every tree makes or takes from the kitchen.
     """
@@ -158,7 +160,7 @@ class _Servers:
     """The nodes that may stand in for others by a table (*serving* nodes), with their prices.
 
     ``free``: the nodes that can be made without stand-ins.
-    ``nearest``: whether serving nodes are omitted that cost more than the cheapest free one.
+    ``nearest``: whether a serving node is omitted if it costs more than the cheapest free one.
     """
 
     def __init__(self, network: Network, table: StandInTable, free: Collection[int], nearest: bool) -> None:
@@ -214,9 +216,9 @@ def _least_dissimilarities(
 ) -> dict[int, Fraction]:
     """Return a lower bound on the dissimilarity of making each node that is not free, by id (h_max).
 
-    A unit costs at least as much as its most expensive input; a stand-in adds its price. Stand-ins are those
-    of ``servers``, also where the network does not have them. Nodes that no goal needs, and nodes that cannot
-    be made even with stand-ins, are omitted.
+    A unit costs at least as much as its most expensive input; a stand-in adds its price. All stand-ins that
+    ``servers`` allows are considered, even if the network does not have them. Omitted are nodes that no goal
+    needs, and nodes that cannot be made even with stand-ins.
     """
     makers: dict[int, list[set[int]]] = {}
     stack = [goal for goal in goals if goal not in servers.free]
@@ -290,7 +292,8 @@ def _nodes_needed(
 ) -> set[int]:
     """Return the nodes, by id, that a tree may need and that are not free.
 
-    They are goals and, recursively, preconditions of their achievers, the network's stand-ins included.
+    They are goals and, recursively, preconditions of their achievers. Stand-ins of the network are achievers,
+    too.
     """
     needed = {goal for goal in goals if goal not in free}
     stack = list(needed)

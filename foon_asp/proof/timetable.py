@@ -62,8 +62,8 @@ class ScheduleResources(NamedTuple):
     def is_limited(self, problem: Problem, label: str) -> bool:
         """Return whether objects of a label are tools in limited number, so that steps may wait for them.
 
-        If ``tools`` lists the label, they are unless it says that their number is unlimited. Otherwise, they
-        are if ``tools`` lists a node with the label, or if the label is a utensil.
+        If ``tools`` lists the label, they are limited unless its number there is ``None``. Otherwise, they
+        are limited if ``tools`` lists a node with the label, or if the label is a utensil.
         """
         if label in self.tools:
             return self.tools[label] is not None
@@ -71,7 +71,7 @@ class ScheduleResources(NamedTuple):
         return is_node_listed or label in problem.utensils
 
     def is_unlimited(self, label: str) -> bool:
-        """Return whether ``tools`` says that the number of a label is unlimited.
+        """Return whether ``tools`` lists a label without a limit on its number.
 
         Several steps can then share one object of the label at the same time.
         """
@@ -80,9 +80,9 @@ class ScheduleResources(NamedTuple):
     def counted_name(self, node: ObjectNode, label: str) -> ToolName:
         """Return the name under which a tool is counted.
 
-        ``label`` is the tool's label, and ``node`` is the tool itself or an object in it. The name is the
-        node if ``tools`` lists it, or else the label if ``tools`` lists that. A tool that is not listed is
-        named by an object node that has only its contents. An empty one is named by its label.
+        ``label`` is the tool's label, and ``node`` is the tool itself or an object in it. If ``tools`` lists
+        the node, it is the name. Otherwise, if ``tools`` lists the label or the tool is empty, the label is
+        the name. Otherwise, the name is an object node that has only the contents of the tool.
         """
         if node in self.tools:
             return node
@@ -94,8 +94,8 @@ class ScheduleResources(NamedTuple):
     def number_of(self, problem: Problem, name: ToolName) -> int:
         """Return the number of tools of a name.
 
-        It is the number in ``tools``. Without such a number, it is the number of nodes of this name in the
-        stock of the problem, and at least 1.
+        If ``tools`` has a number for the name, return it. Otherwise, return the number of nodes of this name
+        in the stock of the problem, but at least 1.
         """
         listed_number = self.tools.get(name)
         if listed_number is not None:
@@ -107,11 +107,12 @@ class ScheduleResources(NamedTuple):
 class ToolNeed(NamedTuple):
     """The objects of one label that a unit needs as tools.
 
-    ``kept``: preconditions that stay as they are.
+    ``kept``: preconditions that are outputs, too: they stay as they are.
     ``changed``: preconditions that are no outputs.
     ``made``: outputs that the unit makes.
-    ``others``: inputs of the label that the container rule skips. If no input or output has the label, it has
-    one entry for the tool: an input that is in, on or at it, or ``None`` without such an input.
+    ``others``: inputs of the label that the container rule skips. If no input or output has the label, the
+    tool is only a container. The tuple then has one entry: an input in, on or at the tool, or ``None`` if no
+    input is there.
     """
 
     kept: tuple[ObjectNode, ...]
@@ -123,7 +124,7 @@ class ToolNeed(NamedTuple):
     def number(self) -> int:
         """The number of tools of the label that the unit occupies.
 
-        A tool that changes can be one that is made, so the larger number counts.
+        A tool in ``made`` can be a changed or skipped one, so the larger number counts.
         """
         return len(self.kept) + max(len(self.changed) + len(self.others), len(self.made))
 
@@ -131,7 +132,7 @@ class ToolNeed(NamedTuple):
 def tools_needed(problem: Problem, resources: ScheduleResources, unit: FunctionalUnit) -> dict[str, ToolNeed]:
     """Return what a unit needs of each tool in limited number, by label of the tool.
 
-    These tools are inputs and outputs of the unit, and the containers that those are in, on or at.
+    The tools are inputs and outputs of the unit, and containers that an input or output is in, on or at.
     """
     preconditions, _, made = Executions(problem).of(unit)
     tool_needs: dict[str, ToolNeed] = {}

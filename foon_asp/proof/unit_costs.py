@@ -43,7 +43,7 @@ class UnitCosts:
     ``objectives``: the objectives, most important first; empty if the claim is that there is no tree.
     ``measures``: the statements of the certificate about measures, by name.
     ``rates``: the success rate of each motion; empty unless an objective depends on rates.
-    ``fractional_rates``: these rates, without 0 and 1.
+    ``fractional_rates``: the set of success rates other than 0 and 1.
     ``prices``: the price of each unit, by id; empty unless ``price`` is an objective.
     ``trusted_costs``: the stated costs that were used so far, by measure and unit id.
     ``are_multiples``: a cached function from the index of an objective and a number. It returns whether all
@@ -72,7 +72,7 @@ class UnitCosts:
     def _read_measure(self, name: str, stated: Any) -> Trusted:
         """Return the statement of a certificate about what units cost by a measure.
 
-        Refuse an unfit name, a wrong digest, costs below 0, and two costs of one unit. No cost counts as used
+        Refuse an unfit name, a wrong digest, costs below 0, and a unit with two costs. No cost counts as used
         yet.
         """
         require(
@@ -135,9 +135,9 @@ class UnitCosts:
     def _require_complete(
         self, values: Sequence[Fraction | None] | None, count: int, what: str
     ) -> list[Fraction]:
-        """Return values from which none is missing; ``what`` names them in errors.
+        """Return the values without ``None``; refuse fewer than ``count`` of them, and values below 0.
 
-        Refuse ``None`` in place of values, fewer than ``count`` that are not ``None``, and values below 0.
+        ``values`` is ``None`` if all are missing, which is refused. ``what`` names the values in errors.
         """
         require(values is not None, f"a claim needs {what}, but none are given")
         present = [value for value in values or () if value is not None]
@@ -194,9 +194,9 @@ class UnitCosts:
     def written_costs(self, units: list[int], total: Amount) -> list[int | Fraction]:
         """Return the cost of a tree by each objective, as written in a certificate.
 
-        ``units`` are the units of the tree, and ``total`` is its cost as an amount. By ``success``, the
-        cost is the product of the rates; a product of 0 is refused. It is a fraction by ``success``,
-        ``attempts``, ``price``, ``dissimilarity`` and measures, and else whole. Raises
+        ``units`` are the units of the tree, and ``total`` is its cost as an amount. By ``success``, the cost
+        is the product of the rates; a product of 0 is refused. Costs by ``success``, ``attempts``, ``price``,
+        ``dissimilarity`` and measures are fractions. Other costs are whole numbers. Raises
         :class:`CheckLimitError` if a cost is too long to be written.
         """
         costs: list[int | Fraction] = []
@@ -235,8 +235,8 @@ class UnitCosts:
     def read_amount(self, stated: Any) -> Amount:
         """Return a weight or bound as an amount, from a list with one entry for each objective.
 
-        An entry is a fraction or, for ``success``, an object from rate to exponent. Rates that no motion has,
-        and rates of 0 or 1, are refused. Without objectives, the list has one fraction.
+        An entry is a fraction. For ``success``, it is an object from rate to exponent. Rates that no motion
+        has, and rates of 0 or 1, are refused. Without objectives, the list has one fraction.
         """
         amount: Amount = {}
         entries = read_list(stated)

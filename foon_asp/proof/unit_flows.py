@@ -65,10 +65,12 @@ class UnitFlows:
     def _remaining_copies(self, unit: int, o: int, amount: int, made: int) -> int:
         """Return how many of the ``amount`` copies of an input remain after a unit has run.
 
-        The certificate may state that all or none remain. Otherwise, an output with the label of the input
-        decides: if the input is an output itself, ``made`` copies of it remain, but at most ``amount``; if
-        not, none remain. Without such an output, the rule for utensils and places decides
-        (:meth:`_stays_by_rule`).
+        The first case that holds decides:
+
+        - The certificate states whether the input stays: all or none remain.
+        - The input is an output, too: ``made`` copies remain, but at most ``amount``.
+        - Another output has the label of the input: none remain.
+        - Otherwise, :meth:`_stays_by_rule` says whether all or none remain.
         """
         objects, network = self.network.objects, self.network
         node = objects[o]
@@ -83,8 +85,8 @@ class UnitFlows:
     def _stays_by_rule(self, unit: int, node: ObjectNode, outputs: Sequence[ObjectNode]) -> bool:
         """Return whether an input stays although no output has its label.
 
-        A utensil stays if it is empty, or if an output is in, on or at it. An input that is in another input,
-        its container, stays if an output with the label of the container still contains it.
+        A utensil stays if it is empty, or if an output is in, on or at it. An input may be located in another
+        input, its container. It stays if an output with the label of the container still contains it.
         """
         objects, network = self.network.objects, self.network
         if node.label in self.utensils:

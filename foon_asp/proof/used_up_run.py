@@ -1,8 +1,7 @@
 """Search for an order in which a tree with consumable items runs, each of its steps once.
 
-Whether each step of a multiset can be done once is a question about firing sequences of a Petri net. If more
-copies of a node are used up than exist in total, there is no such sequence. Otherwise, a depth-first search
-looks for one.
+The order is a firing sequence of a Petri net. If more copies of a node are used up than exist in total, there
+is no such order. Otherwise, a depth-first search looks for one.
 """
 
 from collections import Counter
@@ -108,8 +107,8 @@ def _total_shortage(
 ) -> Shortage | None:
     """Return a shortage that every order of the steps has; ``None`` without one.
 
-    A node has such a shortage if more copies of it are used up than exist in total: in stock and added by any
-    step. A goal has one if steps use up copies of it, and all steps together leave fewer than are wanted.
+    A node has such a shortage if steps use up more copies of it than the stock has and all steps add. A goal
+    has one if steps use up copies of it, and all steps together leave fewer than are wanted.
     """
     copies = dict(stock)
     for step in steps:
@@ -132,8 +131,8 @@ class _OrderSearch:
     """A depth-first search for an order of steps, which tries steps in the order listed.
 
     ``looks_left``: the number of steps that the search may still examine; at 0, it is given up.
-    ``dead_end``: the shortage after the longest partial order that could not be continued so far; ``None`` if
-    there is no such order, or no shortage of a node of which copies were used up.
+    ``dead_end``: the shortage after the longest partial order so far that no step could continue. ``None`` if
+    there is no such order, or if no step used up copies of what is missing.
     """
 
     def __init__(
@@ -159,8 +158,8 @@ class _OrderSearch:
     def find_order(self) -> tuple[int, ...] | None:
         """Return the steps in an order that runs; ``None`` if no order runs or the search is given up.
 
-        It also sets ``dead_end`` and ``looks_left``. The caller has made sure that no node is overdrawn. The
-        copies of goals then suffice at the end.
+        It also sets ``dead_end`` and ``looks_left``. The caller has made sure that steps use up no more
+        copies than exist and are added in total. The copies of goals then suffice at the end.
         """
         done: list[int] = []
         dead: set[int] = set()  # sets of done steps that no order continues
@@ -187,9 +186,9 @@ class _OrderSearch:
     def _next_steps(self, dead: set[int]) -> Iterator[int]:
         """Yield the waiting steps that can be next, in the order listed.
 
-        A step that leaves enough copies for all other waiting steps is the last one yielded. If no order
-        continues with it, none continues with another. ``dead`` has sets of done steps, as bit masks, from
-        which no order continues. If the steps done now are such a set, nothing is yielded.
+        After a step that leaves enough copies for all other waiting steps, no other step needs to be tried.
+        So this step is the last one yielded. ``dead`` has sets of done steps, as bit masks, from which no
+        order continues. If the present set of done steps is in ``dead``, nothing is yielded.
         """
         end = len(self._steps)
         step = end if self._done in dead else self._next[end]
@@ -203,9 +202,9 @@ class _OrderSearch:
             step = self._next[step]
 
     def _missing_copies(self, done: Sequence[int]) -> Shortage | None:
-        """Return the shortage of the first waiting step that lacks a node which a step in ``done`` used up.
+        """Return the first shortage of a waiting step that done steps caused by using up copies.
 
-        Return ``None`` if there is no such step.
+        ``done`` has the done steps. Return ``None`` if there is no such shortage.
         """
         step = self._next[-1]
         while step != len(self._steps):

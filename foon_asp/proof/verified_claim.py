@@ -14,8 +14,7 @@ class Trusted(NamedTuple):
     ``name``: the name of the measure.
     ``rules``: the text of the rules that define the measure.
     ``sha256``: the digest of this text.
-    ``costs``: the costs by unit id, as stated. That no other unit costs less than 0 is taken on trust as
-    well.
+    ``costs``: the costs by unit id, as stated. That other units cost at least 0 is taken on trust, too.
     """
 
     name: str
@@ -47,7 +46,7 @@ class Verified(NamedTuple):
     ``goals``: the goal nodes, by id.
     ``containers``: the container rule, ``strict`` or ``implied``.
     ``level``: the level of the network.
-    ``rules``: the constraints that all these trees satisfy, each with its name (``rule``) and its values.
+    ``rules``: the constraints on all trees of the claim, each with its name (``rule``) and its values.
     ``not_covered``: names of constraints that the claim does not take into account.
     ``tree``: the units by id, in an order that executes; ``None`` without a tree.
     ``costs``: the costs of the tree, one for each objective; ``None`` without a tree.

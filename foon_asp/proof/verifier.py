@@ -266,10 +266,10 @@ class Check:
                 require(self._is_enough([total, used_cost], least), "the weights do not add up to enough")
 
     def _above_cutoff(self, choices: Any, decided: frozenset[int]) -> list[int]:
-        """Return the members that a node of the proof excludes because they cost too much.
+        """Return the members that a node of the proof excludes by reduced-cost fixing, as stated.
 
-        This is reduced-cost fixing. That they cost too much is not checked here. Refuse an empty list, double
-        members, and members in ``decided``, which are used or excluded already.
+        Whether they cost too much is not checked here. Refuse an empty list, double members, and members in
+        ``decided``, which are used or excluded already.
         """
         members = [self._read_branch_member(choice) for choice in read_list(choices)]
         require(len(members) > 0, "nothing is too dear")
@@ -289,14 +289,14 @@ class Check:
     ) -> tuple[Amount, Callable[[int], Amount]]:
         """Check a cost partition on a branch; return its sum, and a function that returns reduced costs.
 
-        The sum is a lower bound on the cost of all members that a tree of the branch has in addition to
-        ``used``. With a certain member, the cost is higher by at least the reduced cost of the member.
-        Members in ``without`` are excluded.
+        A tree of the branch has all members ``used`` and none of ``without``. The sum is a lower bound on the
+        cost of its other members. If the tree has a certain member, the bound rises by the member's reduced
+        cost.
 
-        ``weights`` and ``limits`` are rows of a proof: the weights of cuts and of limits. If a limit has a
-        weight, the weights of a member's cuts may exceed its cost by this weight times the member's amount in
-        the limit. In return, the weight times what ``used`` leaves of the limit is subtracted from the sum.
-        Refuse weights of cuts that exceed the cost by more. The cuts count as used by the proof.
+        ``weights`` and ``limits`` are rows of a proof: the weights of cuts and of limits. The weights of the
+        cuts of a member may add up to at most its cost. A limit with a weight raises this maximum by the
+        weight times the amount of the member in the limit. In return, the sum falls by the weight times what
+        ``used`` leaves of the limit. Refuse greater weights of cuts. The cuts count as used by the proof.
         """
         total: Amount = {}
         weighted_limits: list[tuple[Amount, Mapping[int, Fraction]]] = []
@@ -327,9 +327,10 @@ class Check:
             return {key: Fraction(load.get(member, 0), scales[key]) for key, load in loads.items()}
 
         def allowed(member: int) -> Amount:
-            """Return the greatest load of a member: its cost, and the weights of limits by its amounts.
+            """Return the most that the weights of a member's cuts may add up to.
 
-            It is 0 for a used member, whose cost is added apart.
+            It is the cost of the member, plus each weighted limit's weight times the amount of the member. It
+            is 0 for a used member, whose cost is added apart.
             """
             capacity = {} if member in used else self.cost(member)
             if weighted_limits and member not in used:
@@ -342,7 +343,7 @@ class Check:
             return capacity
 
         def reduced_cost(member: int) -> Amount:
-            """Return the part of a member's greatest load that its cuts do not take."""
+            """Return ``allowed(member)`` less the sum of the weights of the member's cuts."""
             return self.arithmetic.sum([allowed(member), negate(load_of(member))])
 
         for member in dict.fromkeys(chain.from_iterable(loads.values())):
@@ -396,8 +397,8 @@ class Check:
     def _landmark(self, cut: frozenset[int]) -> Iterator[int]:
         """Yield the members of a cut, given as a set of nodes; a member may be yielded twice.
 
-        They are the units and steps that make one of its nodes and need none, and its kitchen items. Refuse a
-        cut with a kitchen item unless the objective ``kitchen`` counts items.
+        They are the kitchen items in the cut, and the units and steps that make a node of the cut and need no
+        node of it. Refuse a cut with a kitchen item unless the objective ``kitchen`` counts items.
         """
         network, makers_by_rules = self.network, self.ruled.makers
         self.budget.spend(

@@ -10,8 +10,8 @@ A Farkas combination of the conditions, with weights from 0, bounds the cost of 
 sum of the right-hand sides and of one number for each unit. This number is the least reduced cost over all
 counts that the unit may have.
 
-The inputs that a unit uses up are computed anew from the plain network (``unit_flows.py``), and so is whether
-the plan runs.
+The inputs that a unit uses up are computed anew from the plain network (``unit_flows.py``). The plan is
+executed anew as well.
 """
 
 import math
@@ -164,8 +164,9 @@ class PlanCheck(Check):
     def idle(self) -> frozenset[int]:
         """The units that no plan executes: removed by a rule, or with an unreachable precondition.
 
-        The certificate lists the unreachable nodes under ``unreached``. Refuse the list if a node of it is
-        initial. Also refuse it if a unit that is not removed adds a listed node and needs none of the list.
+        The certificate lists the unreachable nodes under ``unreached``. Refuse the list if one of its nodes
+        is initial. Also refuse it if a unit could reach it: it is not removed, adds a listed node and needs
+        no listed node.
         """
         network = self.network
         stated_ids = self.certificate["unreached"]
@@ -189,9 +190,9 @@ class PlanCheck(Check):
     def _landmark(self, cut: frozenset[int]) -> Iterator[int]:
         """Yield the members of a cut, given as a set of nodes; a member may be yielded twice.
 
-        They are the units that add one of its nodes and need none, except units that no plan executes. The
-        cut may have nodes that rules add. If the objective ``kitchen`` counts items, initial nodes of the cut
-        are members, too. Otherwise, a cut with an endless node is refused.
+        They are the units that add a node of the cut and need no node of it, except units that no plan
+        executes. The cut may have nodes that rules add. If the objective ``kitchen`` counts items, initial
+        nodes of the cut are members, too. Otherwise, a cut with an endless node is refused.
         """
         network, makers_by_rules = self.network, self.ruled.makers
         self.budget.spend(
@@ -324,10 +325,11 @@ class PlanCheck(Check):
     # --- the proof
 
     def _check_proof(self, proof: Any, least: Amount | None) -> None:
-        """Check for each objective that no plan as good by the earlier objectives costs less than ``least``.
+        """Check the proof of each objective: no plan costs less than ``least`` by it.
 
-        If ``least`` is ``None``, the proof is that no plan exists. All costs are then 0, and bounds have to
-        be above 0. If a rule allows no plan, ``least`` has to be ``None``, and the proof has to be empty.
+        Only plans that are as good by the earlier objectives are considered. If ``least`` is ``None``, the
+        proof is that no plan exists. All costs are then 0, and bounds have to be above 0. If a rule allows no
+        plan, ``least`` has to be ``None``, and the proof has to be empty.
         """
         proofs = read_list(proof)
         levels = range(max(1, len(self.objectives)))
@@ -348,9 +350,10 @@ class PlanCheck(Check):
                     self._check_leaf(node, level)
 
     def _children(self, node: Node) -> Iterator[Node]:
-        """Yield the two children of a node, a branch.
+        """Yield the two children of a branching node.
 
-        In the first, the count of a member is at most a number; in the second, it is above this number.
+        In the first, the count of a member is at most a certain number. In the second, it is above this
+        number.
         """
         proof = read_object(node.proof, ("branch", "most", "up_to", "above"))
         member = self._read_branch_member(proof["branch"])
@@ -363,7 +366,7 @@ class PlanCheck(Check):
     def _check_leaf(self, node: Node, level: int) -> None:
         """Check that the Farkas combination of a leaf proves the bound for the counts of this node.
 
-        The leaf is accepted without a bound if the node leaves a member no possible count.
+        If a member has no possible count at the node, the leaf is accepted without a bound.
         """
         require(set(node.proof) <= _LEAF, "expected weights of conditions or a branch")
         conditions = _FarkasCombination(self, level, node.proof)
@@ -381,8 +384,9 @@ class PlanCheck(Check):
         """Return the least reduced cost of a member over all its possible counts at a node.
 
         Return ``None`` if no count is possible. ``level`` is the index of the objective. For counts from 1
-        on, the cost is linear in the count. So it is enough to compare the count 0 and the ends of the range
-        from 1 on. Refuse costs that fall without end.
+        on, the cost is linear in the count. So only the count 0 and the least and greatest count from 1 on
+        are compared. If the cost falls with the count, and there is no greatest count, refuse the
+        certificate.
         """
         arithmetic = self.arithmetic
         low, high = node.min_counts.get(member, 0), self._max_count(member, level, node)
@@ -447,8 +451,8 @@ class PlanCheck(Check):
     def _max_count_by_cost(self, unit: int, level: int, less: bool) -> int | None:
         """Return an upper bound on the count of a unit in plans of at most the claimed cost by an objective.
 
-        With ``less``, the bound is for plans of less than the claimed cost; ``success`` ignores ``less``.
-        Return ``None`` if an execution costs nothing.
+        With ``less``, the bound is for plans of less than the claimed cost, except by ``success``. Return
+        ``None`` if an execution costs nothing.
         """
         per_execution, max_cost = self.cost_lower_bound(unit, level), self.claimed_cost(level)
         if per_execution == 0:
@@ -463,8 +467,9 @@ class PlanCheck(Check):
     def cost_lower_bound(self, member: int, level: int) -> Fraction:
         """Return a lower bound on the cost of a member by an objective, as one number.
 
-        It is the exact cost, except by ``success``: there, ``-log`` of the rate is rounded down to a multiple
-        of ``1 / LOGARITHM_SCALE``, and a rate of 0 is refused. An item costs 0 by ``success``.
+        For objectives other than ``success``, it is the exact cost. For ``success``, it is ``-log`` of the
+        rate, rounded down to a multiple of ``1 / LOGARITHM_SCALE``. A rate of 0 is refused, and an item costs
+        0.
         """
         if self.objectives[level] != "success":
             return self.amount_by_objective(member, level).get((level, None), Fraction(0))
@@ -500,7 +505,7 @@ class PlanCheck(Check):
         """Return whether a cut, a set of nodes, has a goal of a rule or a goal that needs more copies.
 
         A goal needs more copies if initial copies do not satisfy it. With the objective ``kitchen``, every
-        goal does that is not endless.
+        goal that is not endless needs more copies.
         """
         has_goal = any(
             goal in nodes and goal not in self.endless and self._is_lacking(goal, self.copies_wanted(goal))
@@ -520,8 +525,8 @@ class PlanCheck(Check):
     def _require_enough(self, bound: Amount, level: int) -> None:
         """Refuse a bound that is below the claimed cost by an objective.
 
-        The bound is first rounded up to a multiple of ``1 / cost_denominator``, if this is not ``None``. If
-        the claim is that no plan exists, refuse a bound that is not above 0.
+        If ``cost_denominator`` is not ``None``, the bound is first rounded up to a multiple of ``1 /
+        cost_denominator``. If the claim is that no plan exists, refuse a bound that is not above 0.
         """
         if self.least is None:
             enough = self.arithmetic.sign(bound) > 0
@@ -604,9 +609,9 @@ class _FarkasCombination:
             self.levels.append((number, weight))
 
     def _weighted_rows(self, key: str, name_length: int = 1) -> Iterator[tuple[list[int], Amount]]:
-        """Yield the weighted conditions under a key: the numbers that name each, and its weight.
+        """Yield the weighted conditions under a key: a list of the numbers that name one, and its weight.
 
-        ``name_length`` is how many numbers name a condition.
+        ``name_length`` is the length of the list.
         """
         read = partial(self.check.read_weight, level=self.level)
         return self.check.read_weights(key, self.proof.get(key, []), read, name_length)
@@ -614,8 +619,8 @@ class _FarkasCombination:
     def _add_cut(self, cut: int, weight: Amount, holds: bool) -> None:
         """Add the condition of a cut: a member is executed, or a copy of an item in it is taken.
 
-        ``holds`` says whether the cut has a goal, or a precondition of the unit that it is before. If not,
-        the cut is refused. The cut is recorded as used.
+        ``holds`` says whether the cut has a goal or, for a cut before a unit, a precondition of this unit. If
+        not, the cut is refused. The cut is recorded as used.
         """
         check = self.check
         require(holds, f"cut {cut} holds neither a goal nor what the unit asks for")

@@ -62,8 +62,8 @@ class Literal(NamedTuple):
 class Test(NamedTuple):
     """A comparison, ``#true`` or ``#false`` in a body, with or without ``not``.
 
-    ``holds`` is its truth value. It is ``None`` if it depends on a variable, or on a term with an operation,
-    which is not evaluated here.
+    ``holds`` is the truth value. It is ``None`` if the comparison has a variable, or a term with an
+    operation.
     """
 
     ast: AST
@@ -99,8 +99,8 @@ class Guard(NamedTuple):
 class Aggregate(NamedTuple):
     """An aggregate in a body.
 
-    ``holds`` is its truth value if the guards alone decide it, as in ``#count { ... } < #sup``; otherwise
-    ``None``. ``negations``, the number of ``not`` before it, is 0, 1 or 2; ``holds`` takes them into account.
+    ``negations`` is the number of ``not`` before it: 0, 1 or 2. ``holds`` is the truth value, including any
+    ``not``. It is ``None`` unless the guards alone decide it, as in ``#count { ... } < #sup``.
     """
 
     function: AggregateFunction
@@ -124,7 +124,7 @@ class Clause(NamedTuple):
     """A rule without pools, taken apart.
 
     ``plain``: whether the rule is a constraint, or its head is one atom without negation, minus or choice.
-    ``head``: this atom; ``None`` for a constraint, and for a rule that is not plain.
+    ``head``: the head atom of a plain rule; ``None`` for a constraint, and for a rule that is not plain.
     ``head_elements``: the head atoms of a rule that is not plain, each with its condition.
     ``number``: a number for the rule; the clauses of a rule with pools have the same number.
     ``ast``: the syntax tree of the clause; its body has one node for each conjunct of ``body``.
@@ -180,7 +180,7 @@ def source_of(statement: AST) -> Source:
 def statement_text(statement: AST, rules: Loaded | None = None) -> str:
     """Return a statement on one line, as it is written in its ``.lp`` file or in the text of ``rules``.
 
-    If it is from neither, it is returned as clingo prints it.
+    A statement that is from neither is returned as clingo prints it.
     """
     begin, end = statement.location.begin, statement.location.end
     if isinstance(rules, Stated) and begin.filename == rules.place:
@@ -219,7 +219,7 @@ def value(term: AST, constants: Constants) -> Symbol | None:
 def plain_value(symbol: Symbol) -> str | int | None:
     """Return the value of a number or of a text in quotes, without the quotes; ``None`` for others.
 
-    Among the others are words without quotes, ``#sup`` and ``#inf``.
+    For example, it is ``None`` for a word without quotes, ``#sup`` and ``#inf``.
     """
     if symbol.type is SymbolType.Number:
         return symbol.number
@@ -239,9 +239,9 @@ def factors(term: AST) -> list[AST]:
 def constant_values(definitions: Iterable[AST], settings: Sequence[str]) -> dict[str, Symbol | None]:
     """Return the values of constants by name, from ``#const`` statements and settings ``name=value``.
 
-    A setting replaces a default value; settings of other names are ignored. The value is ``None`` if only
-    clingo can tell it. That is so for arithmetic, for the name of another constant, and for a constant with
-    two statements, for example.
+    A setting replaces a default value; settings of other names are ignored. A value is ``None`` if only
+    clingo can tell it. Examples are arithmetic, the name of another constant, and a constant with two
+    statements.
     """
     texts: dict[str, str | None] = {}
     for definition in definitions:
@@ -277,8 +277,8 @@ def variables(*syntax_nodes: AST) -> Iterator[str]:
 def global_variables(conjunct: Conjunct) -> Iterator[str]:
     """Yield the names of the global variables of a conjunct, with repeats.
 
-    They are the variables of a literal, a comparison or a guard. Those in the elements of an aggregate and in
-    a conditional literal may be local, and are left out.
+    They are the variables of a literal, a comparison or a guard. Variables in the elements of an aggregate
+    and in a conditional literal may be local, and are left out.
     """
     if isinstance(conjunct, Literal):
         return variables(*conjunct.arguments)

@@ -43,8 +43,8 @@ def library_constraints() -> list[LibraryConstraint]:
 def _read_constraint(file: Path) -> LibraryConstraint:
     """Return the ready-made constraint in a file.
 
-    The comment at its start has the title, the purpose and an example call. The parameters are its ``#const``
-    statements.
+    The comment at the start of the file has the title, the purpose and an example call. The parameters are
+    the ``#const`` statements.
     """
     lines = file.read_text(encoding="utf-8").split("\n")
     header = [line.removeprefix("%").strip() for line in lines[: lines.index("")]]

@@ -77,9 +77,10 @@ class Dependence:
 
     ``varied`` are predicates whose atoms the question itself changes, such as ``available/1`` in the search
     for a shopping list; their monotonicity is unknown.
-    ``doubts``: by predicate that rules derive, why its monotonicity is unknown.
-    ``loops``: the predicates that are derived from themselves through ``not``, an aggregate, a condition or a
-    choice, each with the place of such a rule.
+
+    ``doubts``: for each predicate in a head whose monotonicity is unknown, the reason.
+    ``loops``: the predicates that depend on themselves through ``not``, an aggregate, a condition or a
+    choice. The value is the place of a rule of this cycle.
     """
 
     def __init__(
@@ -149,8 +150,9 @@ class Dependence:
     def _doubt_of_predicate(self, signature: Signature) -> Doubt | None:
         """Return why a predicate's monotonicity is unknown whatever its rules are, else ``None``.
 
-        It is unknown if the predicate has a minus, varies, belongs to a question, or is one of a few facts
-        that are not the same in each search.
+        It is unknown for a predicate with a minus, and for one whose atoms the question changes. It is
+        unknown for a predicate of the question's own encoding, with a reserved name. It is also unknown for a
+        few facts that differ from search to search.
         """
         name, arity = signature
         if name.startswith("-"):
@@ -166,9 +168,10 @@ class Dependence:
         return None
 
     def _find_doubts(self, program: Sequence[Clause]) -> None:
-        """Fill ``doubts`` as a fixpoint: a doubt about a body passes to the predicates in the head.
+        """Fill ``loops``, and fill ``doubts`` as a fixpoint.
 
-        A head that is a choice is a doubt, too. Also fills ``loops``.
+        At first, the predicates in the head of a choice and those in ``loops`` have a doubt. Then a doubt
+        about the body of a rule passes to the predicates in its head.
         """
         for clause in program:
             if not clause.plain:
@@ -188,7 +191,7 @@ class Dependence:
                         changed = True
 
     def _find_loops(self, program: Sequence[Clause]) -> None:
-        """Fill ``loops``, and add the predicates in it to ``doubts``, unless they have a doubt."""
+        """Fill ``loops``; each predicate in ``loops`` gets a doubt, unless it already has one."""
         reads: defaultdict[Signature, set[Signature]] = defaultdict(set)
         nonpositive: list[tuple[Signature, Signature, Source]] = []
         for clause in program:
@@ -208,11 +211,10 @@ class Dependence:
                     self.doubts.setdefault(looped, Doubt(reason, source))
 
     def _find_nonnegative(self, program: Sequence[Clause]) -> None:
-        """Set ``_nonnegative`` to the predicate arguments that are never negative numbers.
+        """Set ``_nonnegative`` to the predicate arguments that are always numbers from 0.
 
-        This is a greatest fixpoint: an argument is dropped as soon as some rule may derive a negative number
-        for it. Rules with a choice or disjunction as head are not looked at, since their predicates are in
-        ``doubts`` anyway.
+        This is a greatest fixpoint: an argument is dropped as soon as some rule may derive anything else for
+        it. Rules with a choice or disjunction as head are ignored: their predicates are in ``doubts`` anyway.
         """
         facts = {
             (signature, position) for signature, subjects in SUBJECTS.items() for position in subjects.numbers
@@ -239,8 +241,8 @@ class Dependence:
     def _is_nonnegative(self, term: AST, condition: Iterable[Conjunct]) -> bool:
         """Whether a term is known to be a number from 0 where the condition holds.
 
-        Of operations, only a product can be: if one factor is a number of executions, as ``N`` in
-        ``times(U,N)``, and the other one is known to be a number from 0.
+        Among operations, only some products are recognised. One factor must be a number of executions, as
+        ``N`` in ``times(U,N)``. The other factor must be known to be a number from 0.
         """
         condition = tuple(condition)
         product = factors(term)
@@ -281,10 +283,10 @@ class Dependence:
     def _of_guard(self, aggregate: Aggregate, guard: Guard, conditions: Monotonicity) -> Monotonicity:
         """Return the monotonicity that an aggregate would have with only the given guard.
 
-        ``conditions`` is the monotonicity of the conditions of the aggregate's elements. The result is
-        ``conditions`` or its negation, by the direction of the comparison; ``#min`` reverses it. It is
-        ``BOTH`` for ``!=``, for ``=``, and for a sum whose weights may be negative. A count that equals 0 is
-        an exception: it has the negation.
+        ``conditions`` is the monotonicity of the conditions of the aggregate's elements. With ``>`` and
+        ``>=``, the result is ``conditions``. With ``<`` and ``<=``, and for a count that equals 0, it is the
+        negation of ``conditions``. For ``#min``, the directions are swapped. For any other ``=``, for ``!=``,
+        and for a sum whose weights may be negative, the result is ``BOTH``.
         """
         operator, function = guard.comparison, aggregate.function
         if operator in {ComparisonOperator.Equal, ComparisonOperator.NotEqual}:
@@ -326,8 +328,8 @@ def predicate_text(signature: Signature) -> str:
 def _predicates_read(conjuncts: Iterable[Conjunct], is_positive: bool) -> Iterator[tuple[Signature, bool]]:
     """Yield the predicates that conjuncts read, each with whether it is read positively.
 
-    A predicate that is negated, or stands in an aggregate or a condition, is not. If ``is_positive`` is
-    ``False``, none is.
+    A predicate is read positively if it is not negated, and stands in no aggregate or condition. With
+    ``is_positive=False``, no predicate counts as read positively.
     """
     for conjunct in conjuncts:
         if isinstance(conjunct, Literal):

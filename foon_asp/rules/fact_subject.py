@@ -19,8 +19,7 @@ class Subjects(NamedTuple):
 
     ``about``: the subjects that the fact describes.
     ``leads_to``: the subjects that are in the tree whenever all subjects in ``about`` are.
-    ``numbers``: the positions of numbers that are never negative. Arguments at other positions are names or
-    numbers.
+    ``numbers``: the positions of numbers that are never negative.
     """
 
     about: dict[int, Subject]

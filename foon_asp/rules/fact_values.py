@@ -18,7 +18,10 @@ Value = str | int | None
 class Columns(NamedTuple):
     """Argument positions of a predicate, from 0, by type of argument.
 
-    ``units`` and ``objects`` have numbers of units and of object nodes, ``numbers`` other numbers.
+    ``units``: the arguments that are numbers of units.
+    ``objects``: the arguments that are numbers of object nodes.
+    ``numbers``: the arguments that are other numbers.
+    ``texts``: the arguments that are texts.
     """
 
     units: tuple[int, ...] = ()
@@ -65,7 +68,10 @@ LISTED_FACTS: Final[Mapping[tuple[str, int], tuple[str, ...]]] = {
 
 
 class _NetworkPart(NamedTuple):
-    """The names of a network, or of its first units and nodes, that are searched for texts."""
+    """The parts of a network whose names are searched: motions, sources, object nodes and utensils.
+
+    Of a store, only the first sources and object nodes are included.
+    """
 
     motions: Iterable[str]
     sources: Iterable[Sequence[Source]]
@@ -103,8 +109,8 @@ class FactValues:
     """Search in the facts about the whole network of a question, not only in the part that goals can need.
 
     In a store, the part in memory is searched first, then all units and nodes, one by one. The search reads
-    at most ``max_read`` units and as many nodes. If there are more, a name that is not among these counts as
-    one that a fact has.
+    at most ``max_read`` units and as many nodes. If a store has more, a name that was not found counts as
+    present.
     """
 
     max_read: ClassVar[int] = 200_000
@@ -141,8 +147,8 @@ class FactValues:
     def nearest(self, name: str, columns: Columns, words: Mapping[int, str]) -> dict[int, str] | None:
         """Return the texts of the fact spelled most like ``words``; both are given by argument position.
 
-        If a fact has exactly these texts, they are returned. Return ``None`` if no text is similar, and for
-        every call after the twentieth.
+        If a fact has exactly these texts, they are returned. Return ``None`` if no text is similar. From the
+        21st call on, nothing is searched, and the result is ``None``.
         """
         self._lookups_left -= 1
         if self._lookups_left < 0:
@@ -166,7 +172,10 @@ class FactValues:
         return {columns.texts[number]: spelt[matches[0]][number] for number in wanted}
 
     def _fact_texts(self, name: str, network: Network) -> Iterable[Names]:
-        """Return the texts of each fact of a predicate in a network; of a store, only the first facts."""
+        """Return the texts of each fact of a predicate in a network.
+
+        In a store, only facts about the first ``max_read`` units and nodes are included.
+        """
         limit = self.max_read if _is_read_one_by_one(network) else None
         sources, objects = islice(network.sources, limit), islice(network.objects, limit)
         return _TEXTS[name](_NetworkPart(network.different_motions, sources, objects, self._problem.utensils))
@@ -200,7 +209,7 @@ class FactValues:
 def unknown_text_message(facts: Sequence[str], word: str, meant: str | None) -> str:
     """Return the message that no fact of the predicates ``facts`` has the text ``word``.
 
-    It suggests ``meant`` as the intended name, unless this is ``None``.
+    It suggests ``meant`` as the intended name, unless ``meant`` is ``None``.
     """
     text = f"nothing in this network has the {' or '.join(facts)} {quote(word)}"
     return text if meant is None else f"{text}; did you mean {quote(meant)}?"

@@ -60,7 +60,7 @@ class Locality:
     def nonlocality(self, clause: Clause) -> Nonlocality | None:
         """Return why a rule is not local; ``None`` if it is local.
 
-        A rule whose head has a minus never is.
+        A rule with a minus in its head is never local.
         """
         if any(atom.signature[0].startswith("-") for atom in clause.heads):
             return Nonlocality(
@@ -77,8 +77,8 @@ class Locality:
     def _find_leads_to(self) -> dict[Signature, dict[int, set[Subject]]]:
         """Find the arguments of auxiliary predicates that are in the tree whenever an atom holds.
 
-        Return the subjects that an argument stands for in the tree, by predicate and position. They are the
-        greatest fixpoint over the rules. The result is also set as ``_leads_to``.
+        Return a dictionary by predicate and position; its values are the subjects that the argument stands
+        for in the tree. It is the greatest fixpoint over the rules, and is also set as ``_leads_to``.
         """
         leads_to = {
             signature: {position: set(Subject) for position in range(signature[1])}
@@ -104,7 +104,7 @@ class Locality:
         """Fill ``_about`` and ``_nonlocal`` for all auxiliary predicates, as a fixpoint.
 
         ``_about`` gets the arguments that have to be in the tree for the rules of a predicate to be local.
-        ``_nonlocal`` gets the predicates that have a rule which is not local, whatever their arguments are.
+        ``_nonlocal`` gets each predicate with a rule that is not local, whatever the arguments are.
         """
         changed = True
         while changed:
@@ -128,9 +128,9 @@ class Locality:
                     changed |= self._add_about_arguments(clause, clause.head)
 
     def _add_about_arguments(self, clause: Clause, head: Literal) -> bool:
-        """Add the head arguments to ``_about`` that have to be in the tree so that a rule is local.
+        """Add to ``_about`` the head arguments that have to be in the tree so that a rule is local.
 
-        If that cannot make the rule local, mark its predicate as not local. Return whether anything changed.
+        If no arguments make the rule local, mark its predicate as not local. Return whether anything changed.
         """
         changed = False
         while head.signature not in self._nonlocal:
@@ -164,8 +164,8 @@ class Locality:
     ) -> _TreeTerms:
         """Return the terms that are known to be in the tree wherever the conjuncts hold.
 
-        They are given as text, each with the subjects that it stands for. Only literals without ``not`` tell
-        of such terms. The result includes ``known_terms``, which are in the tree anyway.
+        The keys are terms as text, the values the subjects that a term stands for. The result has
+        ``known_terms``, and the terms that follow from literals without ``not``.
         """
         positive = [literal for literal in conjuncts if isinstance(literal, Literal) and literal.positive]
         tree_terms = {term: set(subjects) for term, subjects in (known_terms or {}).items()}
@@ -183,9 +183,9 @@ class Locality:
     def _arguments_in_tree(self, literal: Literal, tree_terms: _TreeTerms) -> list[tuple[int, Subject]]:
         """Return the arguments that are in the tree if a literal holds: pairs of a position and a subject.
 
-        ``tree_terms`` has the terms that are known to be in the tree. A fact has such arguments only if all
-        subjects that it is about are in ``tree_terms``. For an auxiliary predicate, ``tree_terms`` play no
-        role. The list is empty for any other predicate.
+        ``tree_terms`` has the terms that are known to be in the tree. For a fact, the list is empty unless
+        ``tree_terms`` has all subjects that the fact is about. For an auxiliary predicate, ``tree_terms``
+        does not matter. For any other predicate, the list is empty.
         """
         if literal.signature in self._leads_to:
             leads_to = self._leads_to[literal.signature]
@@ -270,9 +270,11 @@ class Locality:
 
 
 class _LackingTerm(NamedTuple):
-    """A term that has to be in the tree for a rule to be local, and the reason if it is not.
+    """A term that has to be in the tree for a rule to be local, but may be outside.
 
-    ``term`` is empty if the rule is not local whatever terms are in the tree.
+    ``term``: the term as text; empty if the rule is not local whatever terms are in the tree.
+    ``subject``: the kind of thing that the term stands for.
+    ``nonlocality``: the reason why the rule is not local.
     """
 
     term: str

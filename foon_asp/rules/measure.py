@@ -52,8 +52,8 @@ class Measure:
     def costs(self, problem: Problem, deadline: Deadline | None = None) -> Sequence[Cost]:
         """Return the cost of each unit of a problem, by id; a unit without a rule costs 0.
 
-        The costs are cached for the network. Raises :class:`LimitError` at the deadline, which only an
-        evaluation in another process notices.
+        The costs are cached for the network. Raises :class:`LimitError` at the deadline, but only if clingo
+        runs in another process.
 
         Raises :class:`InputError` if rules give a unit two costs, or a cost other than a number from 0.
         Raises :class:`UserError` if they read success rates and the problem has no rates.
@@ -184,7 +184,7 @@ class _Evaluation:
     def _derive_costs(
         self, units: Iterable[int], statements: Iterable["Statement"]
     ) -> Sequence[tuple["Value", ...]]:
-        """Return the costs of units that clingo derives, as rows of world, measure, unit number and cost.
+        """Return the costs that clingo derives for units, as rows of world, measure, unit number and cost.
 
         The world is the number of the unit whose facts were used. Clingo runs in this process if the program
         is small, else in another one. Raises :class:`InputError` if clingo drops an instance of a rule.
@@ -227,16 +227,17 @@ class _Evaluation:
         )
 
     def _error_at(self, code: str, message: str, source: Source) -> Diagnostic:
-        """Return an error about the rules, with the line at its source."""
+        """Return an error about a place in the rules, with the text of its line."""
         from foon_asp.encoding.encoding import located_diagnostic  # noqa: PLC0415 (takes clingo along)
 
         stated = Stated(self._measure.place, self._measure.text)
         return located_diagnostic(Severity.ERROR, code, message, source, [stated])
 
     def _refuse_cost(self, unit: int) -> None:
-        """Raise :class:`InputError` with the rules by which a unit has an invalid cost or several costs.
+        """Raise :class:`InputError` for a unit with an invalid cost or several costs.
 
-        To find them, the unit is evaluated again with each rule for costs alone.
+        The error shows the rules that derive these costs. To find them, the unit is evaluated again with each
+        rule for costs alone.
         """
         from foon_asp.rules.measure_rules import BEYOND  # noqa: PLC0415 (takes clingo along)
 
@@ -283,8 +284,9 @@ def _nodes_key(
 ) -> Hashable:
     """Return a key for the object nodes of a unit; units whose nodes differ only in their ids have one key.
 
-    It has the kind of each node, and the places of the nodes, among those of the unit, in each of
-    ``object_lists``. ``kinds`` has a number for each node, the same number for nodes with the same facts.
+    The key numbers the nodes of the unit from 0 and has the kind of each. For each of ``object_lists``, it
+    has the numbers of the nodes that are listed for the unit. ``kinds`` has a number for each node of the
+    network; nodes with the same facts have the same number.
     """
     nodes = dict.fromkeys((*network.inputs[unit], *network.outputs[unit]))
     positions = {o: position for position, o in enumerate(nodes)}
@@ -317,9 +319,9 @@ def _value_text(value: "Value") -> str:
 def read_measures(rules: str | PathLike[str] | Iterable[str | PathLike[str]]) -> dict[str, Measure]:
     """Read measures from one or several files or texts of rules; return them by name.
 
-    An existing path is a file. Any other text is rules if it has ``:-``, or ends in a full stop; else it is a
-    path. Repeated texts and files are read once. Raises :class:`UserError` for an empty text, for faults in
-    rules, and for a measure that two texts define.
+    An existing path is a file. Any other text is rules if it has ``:-`` or ends in a full stop. Otherwise it
+    is a path. Repeated texts and files are read once. Raises :class:`UserError` for an empty text, for faults
+    in rules, and for a measure that two texts define.
     """
     rules = [rules] if isinstance(rules, str | PathLike) else list(rules)
     if not rules:

@@ -88,8 +88,8 @@ class MeasureRules(NamedTuple):
     ``statements``: the program for clingo, one statement per line.
     ``reads``: the names of the predicates of facts that the rules read.
     ``nameless``: whether units cost the same if their facts differ only in numbers of units and object nodes.
-    ``plain``: whether the grounding is small, since no rule has an interval, a division, two tables or many
-    atoms.
+    ``plain``: whether each rule has few ground instances: no interval or division, at most one table,
+    and few atoms.
     """
 
     names: dict[str, Source]
@@ -176,7 +176,8 @@ class _MeasureReader:
     ) -> Iterator[Statement]:
         """Yield rules that derive the cost ``BEYOND`` where arithmetic overflows 32 bits in clingo.
 
-        ``names`` are the measures, ``dependent`` the predicates that get a world, ``world`` its variable.
+        ``names`` are the measures. ``dependent`` are the predicates that get a world as argument; ``world``
+        is the variable for it.
         """
         statements: list[AST] = []
         sources: list[Source] = []
@@ -196,8 +197,8 @@ class _MeasureReader:
     def _check_head(self, rule: AST, atoms: "_Atoms", names: dict[str, Source]) -> None:
         """Add an error for a head that is not one atom of a permitted predicate.
 
-        Also add one for a cost whose first argument is no name. The measure that a head names is added to
-        ``names``, with its place.
+        Also add an error for a cost whose first argument is no name. Each measure that the head names is
+        added to ``names``, with its place.
         """
         head = rule.head
         if head.ast_type is not ASTType.Literal or head.sign != Sign.NoSign:
@@ -245,10 +246,10 @@ class _MeasureReader:
                 self._add_error_at("undefined-atom", undefined_message(signature, defined | readable), atom)
 
     def _check_names(self, names: dict[str, Source]) -> None:
-        """Add errors for names of measures and constants that are reserved, or have a meaning in the facts.
+        """Add errors for measures and constants with a reserved name, or with a name that facts use.
 
-        Also add one for a constant with the name of a measure. Raises :class:`UserError` if the rules define
-        no measure and have no other error.
+        Also add an error for a constant with the name of a measure. Raises :class:`UserError` if the rules
+        define no measure and have no other error.
         """
         for name, source in names.items():
             if name in PUBLIC_NAMES or name.startswith("_"):
@@ -267,9 +268,9 @@ class _MeasureReader:
             )
 
     def _check_numbers(self) -> None:
-        """Add errors for comparisons of a number with a term that never is one.
+        """Add errors for comparisons of a number with a term that is never a number.
 
-        Also add errors for heads ``cost`` with another number of arguments than 3.
+        Also add errors for heads ``cost`` that do not have 3 arguments.
         """
         for term, message in non_numeric_terms(
             self._rules, [definition.name for definition in self._constants]
@@ -320,8 +321,8 @@ class _MeasureReader:
     def _has_small_grounding(self, atoms: "_Atoms", dependent: frozenset[Signature]) -> bool:
         """Whether a rule, given by its atoms, can have only few ground instances for each unit.
 
-        Such a rule has no interval, no division and few atoms. At most one atom is over a table, a predicate
-        that depends on no facts.
+        Such a rule has no interval, no division and few atoms. At most one atom is over a table, which is a
+        predicate that is not in ``dependent``.
         """
         tables = [atom for atom in atoms.used if _signature(atom) not in dependent]
         return (
@@ -436,9 +437,9 @@ class _Atoms(Transformer):
 def _is_nameless(rules: Sequence[_Atoms]) -> bool:
     """Whether rules compare units and object nodes for equality only.
 
-    The argument positions of units and of object nodes are inferred from the facts, along the variables of
-    each rule. Return ``False`` if such a position has a constant or a variable of the other kind, if such a
-    variable is compared, or if it is a cost.
+    From the facts and the variables of rules, it is inferred which arguments are units or object nodes.
+    Return ``False`` if such an argument is a constant, or if its variable stands for both kinds. Return
+    ``False`` also if its variable is compared otherwise, or is a cost.
     """
     kinds: dict[tuple[Signature, int], str] = {(COST, 1): _UNIT}
     for name, arity in FACT_PREDICATES.items():

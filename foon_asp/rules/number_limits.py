@@ -46,7 +46,7 @@ Head = Callable[[AST], str]
 def number_checks(statements: Iterable[AST]) -> str:
     """Return the text of rules that derive ``_beyond/4`` where a term of the statements overflows.
 
-    It is empty if no term can.
+    The text is empty if no term can overflow.
     """
     return "".join(f"{text}\n" for _, text in overflow_checks(statements, _overflow_atom))
 
@@ -59,11 +59,11 @@ def _overflow_atom(term: AST) -> str:
 
 
 def overflow_checks(statements: Iterable[AST], head: Head) -> Iterator[tuple[AST, str]]:
-    """Yield pairs of a statement and a check rule, which holds where a term or sum overflows.
+    """Yield pairs of a statement and a check rule, which derives its head where a term or sum overflows.
 
-    ``head`` returns the head of the rule. Its body has the conditions of the statement that bind variables or
-    have no arithmetic. The check evaluates the term again only if a value in it is large enough for an
-    overflow. Statements other than rules, ``#const`` and ``#minimize`` have no checks.
+    ``head`` returns the head of the check rule for a term or sum. The body has the conditions of the
+    statement that bind variables or have no arithmetic. A term is evaluated again only if a value in it is
+    large enough for an overflow. Only rules, ``#const`` and ``#minimize`` have checks.
     """
     for statement in statements:
         if not _CALCULATES.search(str(statement)):
@@ -86,8 +86,8 @@ def overflow_checks(statements: Iterable[AST], head: Head) -> Iterator[tuple[AST
 def _term_checks(node: AST, conditions: Sequence[AST], head: Head) -> Iterator[str]:
     """Yield the check rules for the terms in a node that can overflow.
 
-    The head of a rule is ``head`` of the term. Its body has ``conditions``, perhaps a test for a large value,
-    and a call of ``@_exact``. A term of numbers alone has a rule only if it does overflow.
+    ``head`` returns the head of the rule for a term. The body has ``conditions``, perhaps a test for a large
+    value, and a call of ``@_exact``. A term of numbers alone has a rule only if it does overflow.
     """
     for term in _arithmetic_terms(node):
         leaves: dict[str, AST] = {}
@@ -126,8 +126,8 @@ def _postfix(term: AST, leaves: dict[str, AST]) -> Iterator[str]:
 def _safe_magnitude(term: AST) -> int:
     """Return a bound: if no value in a term exceeds it in absolute value, the term cannot overflow.
 
-    It is the greatest such number among ``LARGEST``, its half, its quarter and so on; -1 if even 0 is no such
-    bound.
+    Only ``LARGEST``, its half, its quarter and so on down to 0 are tried. Return the greatest that is such a
+    bound, or -1 if there is no such bound.
     """
     return next(
         (limit for limit in (LARGEST >> n for n in range(32)) if _max_magnitude(term, limit) <= LARGEST), -1
@@ -167,9 +167,9 @@ def _has_interval(term: AST) -> bool:
 
 
 def _sum_aggregates(rule: AST) -> Iterator[tuple[AST, list[str]]]:
-    """Yield each sum in a rule, with its elements as text in which weights become absolute values.
+    """Yield each sum in a rule, with texts of its elements in which weights become absolute values.
 
-    A sum whose weights are all 1 is left out. Of ``#minimize``, only sums in the body are yielded.
+    A sum whose weights are all 1 is left out. In ``#minimize``, only the body is searched for sums.
     """
     for body_part in rule.body if rule.ast_type == ASTType.Minimize else [rule.head, *rule.body]:
         aggregate = body_part.atom if body_part.ast_type == ASTType.Literal else body_part
@@ -182,7 +182,10 @@ def _sum_aggregates(rule: AST) -> Iterator[tuple[AST, list[str]]]:
 
 
 def _magnitude_elements(element: AST) -> Iterator[str]:
-    """Yield two elements as text: one adds a positive weight, one the absolute value of a negative one."""
+    """Yield two elements as text, which together add the absolute value of an element's weight.
+
+    The first is for positive weights, the second for negative weights.
+    """
     inner = element.condition
     condition = list(inner.condition) if isinstance(inner, AST) else list(inner)
     weight = "_Weight"
@@ -223,8 +226,8 @@ def _element_terms(
 ) -> Iterator[tuple[AST, Sequence[AST]]]:
     """Yield the terms and literals of an element, each with the conditions that bind its variables.
 
-    The element is of an aggregate, a choice or a disjunction, or is a conditional literal. With ``counted``,
-    its literal is one of the conditions.
+    The element belongs to an aggregate, a choice or a disjunction, or it is a conditional literal. With
+    ``counted``, the literal of the element counts as a condition.
     """
     terms: list[AST] = list(getattr(element, "terms", ()))
     conditional = element if element.ast_type == ASTType.ConditionalLiteral else element.condition
@@ -238,7 +241,7 @@ def _element_terms(
 def _arithmetic_terms(node: AST) -> Iterator[AST]:
     """Yield the maximal terms with an operation of two operands in a node of the syntax tree.
 
-    Terms within their leaves, such as arguments of functions, are yielded, too.
+    The arguments of functions within such a term are searched, too.
     """
     if node.ast_type == ASTType.SymbolicAtom:
         symbol = node.symbol
@@ -272,9 +275,9 @@ def _check_conditions(body: Iterable[AST]) -> list[AST]:
 def _conditions_without(node: AST, conditions: Sequence[AST]) -> Sequence[AST]:
     """Return the conditions for the check of a node, without the node itself if others bind its variables.
 
-    Clingo drops an instance in which an equation overflows. A check with this equation would be dropped, too.
-    Without the node, conditions with variables that nothing else binds are left out as well. If the others do
-    not bind the variables of its arithmetic, all conditions are returned.
+    The reason is that clingo drops an instance in which an equation overflows, also in a check with this
+    equation. Without the node, conditions with variables that nothing else binds are left out as well. If the
+    other conditions do not bind the variables of the node's arithmetic, all conditions are returned.
     """
     other_conditions = [condition for condition in conditions if condition != node]
     bound = _bound_variables(other_conditions)
@@ -311,7 +314,10 @@ def _bound_variables(conditions: Sequence[AST]) -> set[str]:
 
 
 def _solvable_variables(term: AST) -> Iterator[str]:
-    """Yield the variable for which clingo solves an equation with a linear term such as ``2*X+1``, if any."""
+    """Yield the variable of a linear term such as ``2*X+1``; nothing for any other term.
+
+    Clingo solves an equation with such a term for the variable.
+    """
     if term.ast_type == ASTType.Variable:
         yield term.name
     elif term.ast_type == ASTType.BinaryOperation and term.operator_type in _LINEAR:

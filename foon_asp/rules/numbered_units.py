@@ -36,7 +36,7 @@ def numbered_unit(statements: Iterable[AST]) -> NumberedUnit | None:
 def _numbered_unit_text(clause: Clause) -> str:
     """Return the atom or comparison of a clause that names a unit by its number; empty without one.
 
-    A comparison does if it has a constant, and a variable that stands for a unit in an atom.
+    A comparison names a unit if it has a constant, and a variable that stands for a unit in an atom.
     """
     conditions: list[Conjunct] = [conjunct for _, condition in clause.head_elements for conjunct in condition]
     conjuncts = [*clause.body, *conditions]

@@ -36,10 +36,11 @@ PARAMETERS: Final[Mapping[str, tuple[str, ...]]] = {
 def unknown_parameters(
     constraints: Sequence[Constraint], settings: Sequence[str], values: FactValues
 ) -> Iterator[str]:
-    """Yield a warning for each parameter whose value names nothing in the network, with a similar name.
+    """Yield a warning for each parameter whose value names nothing in the network.
 
-    Only text parameters of unchanged ready-made constraints are checked, if they are set. ``settings``, as
-    ``NAME=VALUE``, are the parameters of constraints that are passed without constants of their own.
+    The warning suggests a similar name, if there is one. Only text parameters of unchanged ready-made
+    constraints are checked, and only if they have a value. ``settings``, as ``NAME=VALUE``, are the
+    parameters of constraints that are passed without constants of their own.
     """
     shared = dict(setting.partition("=")[::2] for setting in settings)
     for constraint in dict.fromkeys(map(find_constraint, constraints)):

@@ -30,7 +30,7 @@ class RuleText(NamedTuple):
 class LibraryUse(NamedTuple):
     """A ready-made constraint with constants of its own, as ``forbid_motion:forbidden_motion=fry``.
 
-    ``file`` is the file of the constraint. ``written`` is the text of the option, such as this example.
+    ``file`` is the file of the constraint. ``written`` is the text of the option, such as the one above.
     """
 
     file: Path
@@ -83,8 +83,8 @@ def given_constraint(constraint: str | PathLike[str] | Constraint) -> Constraint
     """Return the constraint that a Python argument stands for.
 
     A text that is an existing path is this path. ``NAME:CONSTANT=VALUE`` is the use of a ready-made
-    constraint. Any other text is a rule if it has ``:-``, or ends in a full stop; else it is a path, or the
-    name of a ready-made constraint. Raises :class:`UserError` for an empty text.
+    constraint. Any other text is a rule if it has ``:-`` or ends in a full stop. Otherwise it is a path, or
+    the name of a ready-made constraint. Raises :class:`UserError` for an empty text.
     """
     if isinstance(constraint, RuleText | LibraryUse):
         return constraint

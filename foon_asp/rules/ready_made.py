@@ -42,8 +42,8 @@ class ReadyMade:
     """Ready-made constraints of one question, which are evaluated without clingo.
 
     ``local``: ``True``, as the constraints read facts about the tree alone.
-    ``redundant``: ``False``, as a tree needs redundant units only where a required set demands them.
-    ``unsettled``: whether some constraints do more than to remove and require units; these are antimonotone.
+    ``redundant``: ``False``, as only required sets, and no other constraints, can demand redundant units.
+    ``unsettled``: whether some constraints are more than removals of units and required sets.
     ``shrinking``: whether all constraints are antimonotone: if a tree keeps to them, so does every subtree.
     ``constants``: the constants by name, as terms of clingo.
     ``files``: the files of the constraints.
@@ -74,8 +74,8 @@ class ReadyMade:
     def has_same_meaning(self, problem: Problem) -> bool:
         """Whether the constraints mean the same for a problem here as in clingo.
 
-        Return ``False`` if some are ``unsettled`` and the rules see less than the kitchen (``kitchen_seen``).
-        Return ``False`` also if they limit the price, and clingo refuses the prices.
+        Return ``False`` if some are ``unsettled`` and rules see only a part of the kitchen
+        (``kitchen_seen``). Return ``False`` also if they limit the price, and clingo refuses the prices.
         """
         if self.unsettled and problem.kitchen_seen != problem.kitchen:
             return False
@@ -93,7 +93,7 @@ class ReadyMade:
     def restriction_of(self, problem: Problem, deadline: Deadline) -> Restriction | Contradiction:
         """Return the units that the constraints remove from a problem, and the sets that they require.
 
-        Return :class:`Contradiction` if a constraint holds of no tree, or if a required set is empty. The
+        Return :class:`Contradiction` if no tree keeps to some constraint, or if a required set is empty. The
         deadline is not looked at.
         """
         meanings, _ = self._meanings(problem)
@@ -111,8 +111,7 @@ class ReadyMade:
     def upper_limits(self, problem: Problem, deadline: Deadline) -> Iterator[LinearRow]:
         """Yield the constraints that bound a sum of amounts of units from above, as rows.
 
-        A bounded sum over sets of several units is left out, since a set counts only once. The deadline is
-        not looked at.
+        A constraint is left out if it counts a set of several units only once. The deadline is not looked at.
         """
         for rule_meaning in self._meanings(problem)[0]:
             if rule_meaning.max_sum is not None and all(
@@ -142,9 +141,10 @@ class ReadyMade:
 def ready_made(constraints: Sequence[Constraint], settings: Sequence[str]) -> ReadyMade | None:
     """Return the constraints if each is ready-made, unchanged, used once, and has all its constants set.
 
-    Return ``None`` for any other constraints, for one with an error, and if a value is not a plain text or
-    number. ``settings``, as ``NAME=VALUE``, set the constants of constraints that are passed without
-    constants; ``None`` is returned also if a setting is not used.
+    ``settings``, as ``NAME=VALUE``, set the constants of constraints that are passed without constants.
+
+    Return ``None`` for any other constraints, and for one with an error. Return ``None`` also if a setting is
+    not used, and if a value is not a plain text or number.
     """
     shared = dict(setting.partition("=")[::2] for setting in settings)
     files: list[Path] = []
@@ -166,8 +166,9 @@ def _rules_with_values(
 ) -> tuple[Sequence[Rule], Mapping[str, str]] | None:
     """Return constraints with the values of their constants, and all constants as terms of clingo.
 
-    ``uses`` are the names of constraints, each with its constants. These are ``shared`` itself if the use has
-    none of its own. What one use lists, such as allergens, all uses get.
+    ``uses`` are pairs of a constraint's name and its constants. ``shared`` are the constants from settings; a
+    constraint without constants of its own is paired with them. A list in one use, such as allergens, holds
+    for all uses.
 
     Return ``None`` if a value is missing, or is not a plain text or number. Return ``None`` also if a setting
     in ``shared`` is not used.

@@ -22,7 +22,7 @@ _Atom = tuple[Signature, int, tuple[_Term, ...]]  # with its negations
 
 
 class TraitReader:
-    """Reader of the traits that conjunctions about one unit of the tree require of it.
+    """Reader of the traits that a conjunction about one unit of the tree requires of this unit.
 
     It replaces auxiliary predicates by the bodies of their rules. ``clauses`` are the rules, by the predicate
     that they derive.
@@ -82,7 +82,7 @@ class TraitReader:
     def _replace_term(self, term: AST, names: dict[str, _Term]) -> _Term:
         """Return the value of a constant, or the term that ``names`` has for a variable.
 
-        A variable that is not in ``names`` gets a new name there; each ``_`` gets another one.
+        A variable that is not in ``names`` gets a new name there. Each ``_`` becomes a different new name.
         """
         symbol = value(term, self._constants)
         if symbol is not None:
@@ -94,8 +94,8 @@ class TraitReader:
 def _traits(atoms: Sequence[_Atom]) -> Iterator[Trait]:
     """Yield the traits that a conjunction of atoms states for the unit that it uses.
 
-    They are its motion, and labels and ingredients of its inputs and outputs, as far as they are texts. For
-    an input that the rule keeps out of the kitchen, the role is ``Role.MADE``.
+    Traits are the motion of the unit, and the labels and ingredients of its inputs and outputs. Only texts
+    become traits. If the rule says that an input is not in the kitchen, the role is ``Role.MADE``.
     """
     units = {terms[0] for signature, negations, terms in atoms if signature in {USE, TIMES} and not negations}
     facts = [(signature[0], terms) for signature, negations, terms in atoms if not negations]

@@ -74,13 +74,13 @@ class Rule(NamedTuple):
     """A rule of one question, with its kind and locality.
 
     ``source``: the place of the rule.
-    ``reason``: why the kind is ``OTHER``, or why the rule has no effect; else empty. ``reason_source`` is the
-    place that it is about.
+    ``reason``: why the kind is ``OTHER``, or why the rule has no effect; else empty.
+    ``reason_source``: the place in the rules that ``reason`` is about.
     ``nonlocality``: the facts outside the tree that the rule reads; empty for a local rule
-    (:mod:`foon_asp.rules.locality`). ``nonlocality_source`` is the place where it reads them. A ``HELPER`` is
-    always local: its facts count for the rules that use it.
-    ``one_of``: whether the rule requires a unit of each of one or several sets, which are found before the
-    search.
+    (:mod:`foon_asp.rules.locality`). A ``HELPER`` is always local: its facts count for the rules that use it.
+    ``nonlocality_source``: the place where the rule reads these facts.
+    ``one_of``: whether the rule requires a unit of each of one or several sets, which are
+    found before the search.
     """
 
     source: Source
@@ -156,7 +156,7 @@ class Analysis:
         """Return the kind of a clause, and the reason if the kind is ``OTHER``.
 
         The reason is ``None`` for any other kind. A plain rule with a head is a ``HELPER``, unless its
-        predicate is derived from itself through ``not``, an aggregate, a condition or a choice.
+        predicate is in the ``loops`` of :class:`Dependence`.
         """
         dependence = self.dependence
         doubt: Doubt | None
@@ -191,8 +191,8 @@ class Analysis:
     def _why_never(self, body: Iterable[Conjunct]) -> str | None:
         """Return why a body cannot hold, whatever the facts are; ``None`` if no reason is found.
 
-        A reason is a comparison or aggregate that is known to be false, or an argument of the wrong type in a
-        fact: a number where the facts have a text, for example.
+        One reason is a comparison or aggregate that is known to be false. Another one is an argument of the
+        wrong type: a number where the facts have a text, for example.
         """
         for conjunct in body:
             if isinstance(conjunct, Test | Aggregate) and conjunct.holds is False:
@@ -228,8 +228,9 @@ class Analysis:
     def _classify_statement(self, statement: AST, live_clauses: Sequence[Clause]) -> Rule:
         """Return a statement as a rule with its kind and locality.
 
-        ``live_clauses`` are its clauses that can have an effect. Without any such clause, the rule is a
-        ``FACT`` or a ``HELPER`` with the reason. A statement other than a rule is ``OTHER``, and not local.
+        ``live_clauses`` are its clauses that can have an effect. A rule without such clauses is a ``FACT`` or
+        a ``HELPER``, and its reason says why it has no effect. A statement other than a rule is ``OTHER``,
+        and not local.
         """
         source = source_of(statement)
         if statement.ast_type != ASTType.Rule:
@@ -262,9 +263,9 @@ class Analysis:
         """Return a rule with the kind that follows from its translations.
 
         The translations are added to ``removals``, ``at_least_ones`` and ``rows``, under the index of the
-        rule (``number``). A rule that is not local, a ``HELPER`` and an ``OTHER`` rule have none. With a
-        removal, a rule becomes ``DELETING``, unless it is a ``FACT``. With at-least-one constraints, its
-        ``one_of`` is set.
+        rule (``number``). A rule that is not local, a ``HELPER`` or ``OTHER`` has no translation. A rule with
+        a removal becomes ``DELETING``, unless it is a ``FACT``. A rule with at-least-one constraints has
+        ``one_of`` set.
         """
         live_clauses = self.clauses_of_rule[number]
         if not rule.local or rule.kind in {Kind.HELPER, Kind.OTHER}:
@@ -292,7 +293,8 @@ class Analysis:
 def _conjunction_kind(kinds: Iterable[Kind]) -> Kind:
     """Return the kind of a conjunction of rules, from their kinds.
 
-    It is the only kind besides ``FACT``, or ``OTHER`` if there are several.
+    Rules of kind ``FACT`` are ignored, unless all have this kind. If the others have one kind, return this
+    kind; otherwise, return ``OTHER``.
     """
     distinct = set(kinds)
     if len(distinct) > 1:

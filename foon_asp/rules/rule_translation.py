@@ -51,9 +51,11 @@ _ONE_EXECUTION = {USE, TIMES}
 
 
 class Removal(NamedTuple):
-    """A rule that removes the units in whose worlds its program derives ``breaks``.
+    """A rule that removes units.
 
-    If the program derives ``breaks`` in the world ``NOTHING``, there is no tree.
+    Its program derives ``breaks`` in worlds, each of which stands for one unit
+    (:mod:`foon_asp.rules.worlds`). A unit is removed if its world has ``breaks``. If the world ``NOTHING``
+    has ``breaks``, there is no tree.
     """
 
     program: tuple[str, ...]
@@ -62,9 +64,9 @@ class Removal(NamedTuple):
 class AtLeastOne(NamedTuple):
     """A rule that requires a unit of each of several sets.
 
-    ``program``: it derives an atom ``asks`` with a term for each set. It derives ``meets`` with this term in
-    the world of each unit of the set. If it derives ``meets`` in the world ``NOTHING``, no unit of the set is
-    needed.
+    ``program``: rules for clingo, in which a term stands for each set. They derive ``asks`` with the term of
+    each required set. They derive ``meets`` with this term in the world of each unit of the set. If they
+    derive ``meets`` in the world ``NOTHING``, no unit of the set is needed.
     ``wanted``: the traits of the units in the sets.
     """
 
@@ -104,8 +106,8 @@ _ALLOWED = {
 class Translator:
     """Translator of rules to removals, at-least-one constraints or rows.
 
-    The method for a translation returns ``None`` for a rule that has none of this kind. ``program`` has the
-    clauses of all rules.
+    The methods ``removal``, ``at_least_one`` and ``row`` return ``None`` for a rule without such a
+    translation. ``program`` has the clauses of all rules.
     """
 
     def __init__(self, program: Sequence[Clause], constants: Constants, dependence: Dependence) -> None:
@@ -141,8 +143,8 @@ class Translator:
     def at_least_one(self, clause: Clause) -> AtLeastOne | None:
         """Return the at-least-one constraint that a requiring rule stands for.
 
-        Return ``None`` if the rule calculates, or if one of its conditions on the tree is not the absence of
-        a unit.
+        Return ``None`` if the rule calculates. Return ``None`` also if it has a condition on the tree that is
+        not the absence of a unit.
         """
         unit_positions = [n for n, conjunct in enumerate(clause.body) if self._count_units_read([conjunct])]
         set_positions = [n for n in range(len(clause.body)) if n not in unit_positions]
@@ -192,9 +194,9 @@ class Translator:
     def complete_program(
         self, programs: Sequence[str], read: Iterable[Clause]
     ) -> tuple[list[str], set[Signature]]:
-        """Return ``programs`` with the rules that they need, and the predicates of the facts that they read.
+        """Return ``programs`` with the rules that they need, and the predicates of the facts that are read.
 
-        ``read`` has the clauses of which the programs are translations.
+        ``read`` has the clauses from which the programs were translated.
         """
         facts: set[Signature] = {("unit", 1)}
         rules: list[str] = []
@@ -274,7 +276,7 @@ class Translator:
         return f"{self._answer_head('weighs', weight, unit)} :- {'; '.join(body)}.", execution.signature
 
     def _remaining_bound(self, comparison: int, term: AST) -> tuple[bool, int] | None:
-        """Return the bound that remains if a comparison is forbidden: whether it is lower, and its number.
+        """Return the bound that a forbidden comparison leaves: whether it is a lower bound, and its number.
 
         If ``> 9`` is forbidden, the upper bound ``(False, 9)`` remains. Return ``None`` if the term is no
         number, and for ``=`` and ``!=``.
@@ -287,9 +289,10 @@ class Translator:
     def _alternatives(self, clause: Clause, position: int) -> "list[_Alternative] | None":
         """Return the conditions under which a unit makes a conjunct of a requiring rule false.
 
-        Each condition is a pair: its parts as texts for clingo, and as conjuncts. The conjunct states that
-        units are absent: it is a literal or a conditional with ``not``, or a count of 0. Return ``None`` for
-        any other conjunct.
+        The conjunct, given by its position, states that units are absent. It is a literal or a conditional
+        with ``not``, or a count of 0. Return ``None`` for any other conjunct.
+
+        Each condition is a pair: a list of its conjuncts as texts for clingo, and the conjuncts themselves.
         """
         conjunct, node = clause.body[position], clause.ast.body[position]
         if isinstance(conjunct, Aggregate):
@@ -330,10 +333,10 @@ class Translator:
         return f'{ANSWER[0]}({self._numbers},"{what}",{of},{world})'
 
     def _rule_text(self, head: str, clause: Clause) -> str:
-        """Return a rule with this head and the body of a clause.
+        """Return a rule with the head ``head`` and the body of a clause.
 
-        If the head has the variable for worlds, the rule gets a condition on it: any world if the clause
-        depends on the tree, else the world without units.
+        If the head has the variable for worlds, the body gets a condition on this variable. It is any world
+        if the clause depends on the tree, else the world without units.
         """
         body = [str(self._worlds.visit(node)) for node in clause.ast.body]
         if self._world in head:

@@ -26,8 +26,8 @@ _SHRINKING = {Kind.HELPER, Kind.FACT, Kind.DELETING, Kind.SHRINKING}
 class ShownRule(NamedTuple):
     """A rule as users see it: its text, and places in files.
 
-    ``use`` is the option text of a ready-made constraint with constants of its own, else empty. The places,
-    such as ``source``, replace those of ``rule``, which may be in the text of such a constraint.
+    ``use`` is the option text of a ready-made constraint with constants of its own, else empty. The places of
+    ``rule`` may be in the text of such a constraint; use ``source`` and the other places here instead.
     """
 
     rule: Rule
@@ -41,11 +41,11 @@ class ShownRule(NamedTuple):
 class Together(StrEnum):
     """The reductions that stay valid under rules.
 
-    ``REDUCED``: all, since the rules only remove units.
-    ``REQUIRED``: all, with the required sets as further goals.
-    ``CUT``: exclusion of units that cannot matter for the goals, or that bounds exclude.
-    ``BOUNDED``: only exclusion by bounds.
-    ``PLAIN``: none.
+    ``REDUCED``: all reductions, since the rules only remove units.
+    ``REQUIRED``: all reductions, if the required sets are further goals.
+    ``CUT``: only the exclusion of units that cannot matter for the goals, and of units by bounds.
+    ``BOUNDED``: only the exclusion of units by bounds.
+    ``PLAIN``: no reductions.
     """
 
     REDUCED = "reduced"
@@ -82,15 +82,15 @@ class Rules:
         self.rules: tuple[Rule, ...] = self._analysis.rules
 
     def varying(self, varied: Collection[Signature]) -> "Rules":
-        """Return these rules as they are understood if the facts of some predicates may change.
+        """Return these rules, analysed for a question in which the facts of some predicates may change.
 
-        Such facts are derived by other rules, or differ from question to question.
+        Facts in ``varied`` are derived by other rules, or differ from question to question.
         """
         return Rules(self._encodings, self._constants, varied, self._endless)
 
     @cached_property
     def shown_rules(self) -> tuple["ShownRule", ...]:
-        """The rules as users see them; those of a ready-made constraint as in its file."""
+        """The rules as users see them; a rule of a ready-made constraint is shown as in its file."""
         texts: dict[int, str] = {}
         uses: dict[str, Stated] = {}
         for encoding in self._encodings:
@@ -103,7 +103,7 @@ class Rules:
             texts.update((id(statement), statement_text(original, file)) for statement, original in pairs)
 
         def source_in_file(source: Source | None) -> Source | None:
-            """Return a place; in a ready-made constraint, with its file instead of the name of its use."""
+            """Return a place; if it is in a use of a ready-made constraint, return the place in its file."""
             use = None if source is None else uses.get(source.file)
             return source if source is None or use is None else source._replace(file=str(use.file))
 
@@ -208,7 +208,7 @@ class Rules:
     def restriction_of(
         self, problem: Problem, deadline: Deadline, units: Collection[int] | None = None
     ) -> Restriction | Contradiction | None:
-        """Return the restriction of a problem by the rules that remove units or require one of a set.
+        """Return the restriction of a problem by the rules that remove units or require a unit of a set.
 
         A tree keeps to these rules if and only if it has no removed unit, and a unit of each required set.
         Only ``units`` are considered, by default the units that can execute.
@@ -220,7 +220,7 @@ class Rules:
         return None if answers is None else answers.restriction
 
     def leave_to_search(self, problem: Problem) -> bool:
-        """Whether to leave the rules to the search: in a large network, if they require no unit.
+        """Whether to leave the rules to the search: in a large network, if no rule requires a unit.
 
         A network is large if it has more than ``TUNING.evaluated_units`` units. There, the search evaluates
         the rules faster, since it looks only at units near the goals.
@@ -231,7 +231,7 @@ class Rules:
     def _answers(
         self, problem: Problem, deadline: Deadline, units: Collection[int] | None = None
     ) -> UnitAnswers | None:
-        """Return the evaluation of the rules on single units; ``None`` where clingo refuses a rule.
+        """Return the evaluation of the rules on single units; ``None`` if clingo refuses a rule.
 
         A restriction of the problem is ignored. The result for the last problem and units is cached.
         """
@@ -260,10 +260,10 @@ class Rules:
         return self._last[2]
 
     def _evaluated_units(self, problem: Problem) -> Collection[int]:
-        """Return the ids of the units to evaluate rules on: all that can execute.
+        """Return the ids of the units to evaluate rules on: by default, all that can execute.
 
-        In a large network, they are only the units that at-least-one constraints name, if no other rules are
-        evaluated.
+        In a large network with at-least-one constraints alone, they are only the units with traits that these
+        constraints name.
         """
         network = problem.network
         if len(network) > TUNING.evaluated_units and not (self._analysis.removals or self._analysis.rows):

@@ -39,9 +39,9 @@ def load_constraints(constraints: Sequence[Constraint]) -> dict[Constraint, Load
 def _renamed_constraint(use: LibraryUse, number: int) -> Stated:
     """Return a ready-made constraint with its constants set, as text in which names end in a number.
 
-    The constraint's own constants and predicates are renamed, so that it can be used twice. Each statement is
-    on the same line as its beginning in the file. ``number`` is that of the use. Raises :class:`UserError`
-    for an unknown constant or a wrong value.
+    The constraint's own constants and predicates are renamed, so that it can be used twice. ``number`` is the
+    number at the end of the new names. Each statement is on the line where it begins in the file. Raises
+    :class:`UserError` for an unknown constant or a wrong value.
     """
     encoding = read_encoding(use.file)
     values = use.constants

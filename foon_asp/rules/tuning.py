@@ -4,14 +4,14 @@ from typing import NamedTuple
 
 
 class RuleTuning(NamedTuple):
-    """Thresholds for evaluating rules before the search, and measures without another process.
+    """Thresholds for the evaluation of rules and measures.
 
-    ``evaluated_units``: units of a network. In a larger one, rules that only remove units are left to the
-    search, which looks at the units near the goals alone. In benchmarks/rules.py at 100,000 units, this takes
-    0.15 s against 0.43 s.
-    ``plain_atoms``: atoms in a rule of a measure; only with more can its instances be many.
-    ``quick_letters``: letters of facts and rules of a measure; clingo grounds fewer in a fraction of a
-    second, so that no process of its own is started.
+    ``evaluated_units``: the most units in a network for which rules that only remove units are evaluated
+    before the search. In a larger network, the search evaluates them for the units near the goals alone. In
+    benchmarks/rules.py at 100,000 units, this takes 0.15 s against 0.43 s.
+    ``plain_atoms``: the most atoms in a rule of a measure with which it still counts as having few instances.
+    ``quick_letters``: the number of letters from which facts and rules of a measure are grounded in another
+    process. Clingo grounds shorter texts in a fraction of a second.
     """
 
     evaluated_units: int = 20_000

@@ -19,7 +19,7 @@ class UnitAnswers(NamedTuple):
 
     ``restriction``: the removed units and the required sets; :class:`Contradiction` if no tree keeps to the
     rules.
-    ``weights``: by the number of a row, the weight of each unit by id.
+    ``weights``: for each row, given by its number, the weight of each unit by id.
     """
 
     restriction: Restriction | Contradiction
@@ -61,7 +61,7 @@ def ask_units(
 def candidate_units(network: Network, wanted: Iterable[RequiredUnit]) -> set[int] | None:
     """Return the ids of units that may have the traits in ``wanted``, among them all that rules require.
 
-    Of each row, only the first trait is looked at. Return ``None`` if a row has no trait.
+    Only the first trait of each row in ``wanted`` is looked at. Return ``None`` if a row has no trait.
     """
     units: set[int] = set()
     for row in (row for requirement in wanted for row in requirement.rows):
@@ -81,8 +81,8 @@ def _read_answers(problem: Problem, rows: Iterable[tuple[Value, ...]]) -> UnitAn
     """Return the removed units, required sets and weights in the atoms that clingo derived.
 
     ``rows`` are the arguments of the atoms ``_of_unit/4`` (see :mod:`foon_asp.rules.rule_translation`).
-    Worlds of unknown units are skipped. If there is no tree or a required set is empty, return
-    :class:`Contradiction` with the weights.
+    Worlds of unknown units are skipped. If there is no tree or a required set is empty, the restriction in
+    the result is :class:`Contradiction`.
     """
     removed: set[int] = set()
     required: dict[tuple[Value, Value], set[int] | None] = {}  # None where a set is not needed

@@ -65,8 +65,8 @@ def unmatched_warnings(
     Only literals in ``user_files`` get warnings. ``ready_made_files`` are constraints used with them, and
     ``settings`` the constants that are set, as ``NAME=VALUE``.
 
-    There is no warning if another rule in the same file with the same head has a literal that matches and has
-    the same constants. For example, one rule looks for a label, the other for an ingredient of this name.
+    A literal gets no warning if another rule in the file has the same head and a matching literal with the
+    same constants. For example, one rule looks for a label, the other for an ingredient of this name.
 
     There are also warnings for facts in user files, such as ``allergen("milk").``, that name nothing in the
     network.
@@ -103,7 +103,7 @@ class _Search:
     def unmatched(self, program: Sequence[Clause]) -> Iterator[_Unmatched]:
         """Return the literals of the rules of one file that match no fact, each with a warning.
 
-        A literal is left out if another rule with the same head has a literal that matches and has the same
+        A literal is left out if another rule has the same head and a matching literal with the same
         constants.
         """
         candidates: list[_Unmatched] = []
@@ -136,8 +136,8 @@ class _Search:
     ) -> Sequence[Mapping[int, Symbol]]:
         """Return the combinations of values that a literal over a fact requires, by argument position.
 
-        Arguments whose values are unknown are left out. The result is empty if no value is known, and if
-        there are more than 10,000 combinations; then the literal counts as matched.
+        Arguments whose values are unknown are left out. The result is empty if no value is known. It is empty
+        also for more than 10,000 combinations; then the literal counts as matched.
         """
         max_combinations = 10_000
         values_by_position = (
@@ -160,10 +160,10 @@ class _Search:
         return self._values.matches(literal.signature[0], COLUMNS[literal.signature], wanted)
 
     def _argument_values(self, literal: Literal, bound: _Values) -> dict[int, Sequence[Symbol]]:
-        """Return the possible values of arguments, by position; arguments of unknown values are left out.
+        """Return the possible values of arguments, by position.
 
-        ``bound`` has the possible values of variables. An argument that may be an unset constant is left out,
-        too.
+        ``bound`` has the possible values of variables. An argument is left out if its values are unknown, or
+        if it may be an unset constant.
         """
         values_by_position: dict[int, Sequence[Symbol]] = {}
         for position, argument in enumerate(literal.arguments):
@@ -195,8 +195,8 @@ class _Search:
     def _find_listed_values(self, program: Sequence[Clause]) -> dict[tuple[Signature, int], Sequence[Symbol]]:
         """Return the values that facts list for predicates without rules, by predicate and position.
 
-        Only predicates of the user count, not those of the network's facts. An argument is left out if its
-        value in some fact is unknown.
+        Predicates of the network's facts are left out. An argument is left out if its value in some fact is
+        unknown.
         """
         rows: defaultdict[Signature, list[list[Symbol | None]]] = defaultdict(list)
         derived = {
@@ -219,8 +219,8 @@ class _Search:
     def _warning_text(self, literal: Literal, rows: Sequence[Mapping[int, Symbol]]) -> str:
         """Return the warning about a literal that matches no fact.
 
-        ``rows`` are its combinations of values. The warning says that an argument has the wrong type, that no
-        unit or node has a number, or which similar texts a fact has.
+        ``rows`` are its combinations of values. The warning names a cause if one is found: an argument of the
+        wrong type, or a number that no unit or node has. Otherwise it suggests similar texts of a fact.
         """
         name, columns = literal.signature[0], COLUMNS[literal.signature]
         variables = {
@@ -282,8 +282,8 @@ def _unlisted_warnings(
 ) -> list[tuple[Clause, str]]:
     """Return warnings for user facts such as ``allergen("milk").`` with a name that is not in the network.
 
-    Each warning comes with the clause of the fact. A predicate gets no warning if some fact of it has a name
-    in the network.
+    Each warning comes with the clause of the fact. If some fact of a predicate has a name in the network, no
+    fact of this predicate gets a warning.
     """
     listed: defaultdict[Signature, list[tuple[Clause, str]]] = defaultdict(list)
     for clause in program:

@@ -99,8 +99,11 @@ class Desk:
     def opening_data(self) -> Json:
         """Return the data with which the page opens, by the names that its script reads.
 
-        These are the goals of the goals file, the kitchen, the objectives, the further answers to choose
-        from, the conditions that are fixed, and the opening form.
+        These are
+        - the goals of the goals file, the kitchen and the objectives,
+        - the further answers to choose from,
+        - the conditions that are fixed, and
+        - the opening form.
         """
         dataset = self._foon.dataset
         return {
@@ -173,8 +176,8 @@ class Desk:
     def _problem_of(self, form: Form) -> Problem:
         """Return the problem of a form, with the changes that the form makes to the kitchen.
 
-        If items are used up, the stock of the desk counts, without the items that the form removes. The
-        exceptions of the desk, which say what stays, also count.
+        If items are used up, the stock and the items that stay are those of the desk. Items that the form
+        removes are not in the stock.
         """
         foon = self._foon.vary(adding=form.adding, without=form.without)
         stock = stays = None
@@ -237,8 +240,8 @@ class Desk:
     ) -> None:
         """Call ``answer`` with a deadline and a reporter, once the question before it has ended.
 
-        Any error, and a stop before any answer, is sent as an event and not raised. Positions in the event
-        are those in the rules of the page.
+        Errors are sent as events and not raised. A stop before any answer is such an error. Positions in the
+        event are those in the rules of the page.
         """
         positions, reporter = [], _EventReporter(send_event)
         try:

@@ -53,7 +53,7 @@ class RegretForm(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 def read_question(text: bytes, form_type: type[Question]) -> Question:
     """Return the form that JSON text states, of type ``form_type``.
 
-    Raises :class:`UserError` for text that is no such form, also if a key stands twice in an object.
+    Raises :class:`UserError` for text that is no such form, or that has an object with a repeated key.
     """
     try:
         return msgspec.convert(read_json(text, _object_without_repeats), form_type)

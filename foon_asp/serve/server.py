@@ -14,8 +14,8 @@ from foon_asp.serve.site import web_application
 def serve_desk(desk: Desk, ready: Callable[[str], object]) -> None:
     """Serve the page of a desk until ctrl-C, and then cancel the current question and return.
 
-    The address has a port that is free, and a new secret token. ``ready`` is called with it before the server
-    runs; connections are queued from then on.
+    The address has a port that is free, and a new secret token. Before the server runs, ``ready`` is called
+    with the address; connections are queued from then on.
     """
     token = secrets.token_urlsafe(24)
     with socket.socket() as listener:

@@ -99,9 +99,9 @@ def _guard(app: Asgi, token: str, host: str) -> Asgi:
     """
 
     async def answer_or_refuse(scope: Any, receive: Any, send: Any) -> None:
-        """Answer a request by ``app`` if it is authorized, else by a refusal, both with security headers.
+        """Answer a request by ``app`` if it is authorized, otherwise by a refusal. Both get security headers.
 
-        Ignore what is not HTTP.
+        Ignore connections that are not HTTP.
         """
         if scope["type"] != "http":
             return
@@ -151,12 +151,12 @@ async def _stream_events(
 ) -> Response:
     """Return the events of a question as a stream of JSON Lines.
 
-    ``read`` returns, from the body of the request, the function that answers the question. Before the
+    ``read`` gets the body of the request, and returns the function that answers the question. Before the
     question begins, the current one is cancelled. The question runs in a thread, and is cancelled when the
     connection is closed.
 
-    A body of more than 1,000,000 bytes is answered with status 413, and one that is no question with status
-    400.
+    A body of more than 1,000,000 bytes is answered with status 413. A body that is no question is answered
+    with status 400.
     """
     body = b""
     async for chunk in request.stream():

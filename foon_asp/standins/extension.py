@@ -20,10 +20,10 @@ Pair = tuple[int, int]  # a served and a serving node, by id
 def with_stand_ins(problem: Problem, table: StandInTable, everything: bool = False) -> Problem:
     """Return a problem whose network also has stand-ins, each a unit with one input and one output.
 
-    A stand-in uses one node in place of another that cannot be made from the kitchen. With ``everything``,
-    each such pair of nodes with a price in the table has a stand-in. Otherwise, only those are added that a
-    tree of least dissimilarity can have (proof in docs/stand-ins.md). If the problem has success rates, that
-    of stand-ins is 1; if units have prices, that of stand-ins is 0.
+    A stand-in uses a *serving* node in place of a *served* node that cannot be made from the kitchen. With
+    ``everything``, there is a stand-in for each such pair with a price in the table. Otherwise, there are
+    only stand-ins that a tree of least dissimilarity can have (proof in docs/stand-ins.md). If the problem
+    has success rates, the rate of stand-ins is 1. If units have prices, the price of stand-ins is 0.
 
     Raises:
         UserError: below level 3, if items are used up, or if a unit has the motion of stand-ins.
@@ -56,8 +56,8 @@ def with_stand_ins(problem: Problem, table: StandInTable, everything: bool = Fal
 def _append_stand_ins(network: Network, pairs: Sequence[Pair]) -> Network:
     """Return a copy of a network with a new unit for each pair of a served and a serving node.
 
-    The unit makes the served node of the serving one. Its id is the position of the pair plus the number of
-    units of ``network``.
+    The unit makes the served node from the serving node. Its id is the number of units of ``network`` plus
+    the position of the pair.
     """
     keys = {
         (STAND_IN, frozenset((serving,)), frozenset((served,))): unit
@@ -77,7 +77,7 @@ class _NearestStandIns:
     """Search for the stand-ins that a tree of least dissimilarity can have.
 
     In a stand-in, the *serving* node is used in place of the *served* one. Prices are whole numbers
-    (:class:`NodePrices`). ``available`` has an entry for each node, by id: 1 if it can be made without
+    (:class:`NodePrices`). ``available`` has an entry for each node, by id: 1 if the node can be made without
     stand-ins, else 0.
     """
 
@@ -87,9 +87,10 @@ class _NearestStandIns:
         self._servers: dict[int, dict[int, int]] = {}
 
     def pairs(self) -> list[Pair]:
-        """Return the pairs of a served and a serving node, by id, that these stand-ins have, in any order.
+        """Return the pairs of a served and a serving node, by id, that need a stand-in, in any order.
 
-        If no tree exists, the pairs are enough to prove that.
+        They are the pairs of all stand-ins that a tree of least dissimilarity can have. If no tree exists,
+        they are enough to prove that.
         """
         goals = [goal for goal in self._problem.goals if not self._available[goal]]
         needed = self._needed_nodes(goals)
@@ -108,8 +109,8 @@ class _NearestStandIns:
     def _servers_of(self, served: int) -> dict[int, int]:
         """Return the price of each node, by id, that may serve in place of the node ``served``; cached.
 
-        Nodes that cost more than the cheapest available one are omitted. :meth:`pairs` later removes others
-        from the cache.
+        Nodes that cost more than the cheapest available one are omitted. :meth:`pairs` removes further nodes
+        from the cache later.
         """
         servers = self._servers.get(served)
         if servers is None:
@@ -120,7 +121,7 @@ class _NearestStandIns:
         return servers
 
     def _unavailable_preconditions(self, served: int) -> Iterator[tuple[int, ...]]:
-        """Yield for each achiever of the node ``served`` its preconditions that are not available."""
+        """Yield, for each achiever of the node ``served``, the preconditions that are not available."""
         problem, available = self._problem, self._available
         for unit in problem.makers[served]:
             yield tuple([o for o in problem.needs[unit] if not available[o]])
@@ -128,7 +129,7 @@ class _NearestStandIns:
     def _needed_nodes(self, goals: Iterable[int]) -> set[int]:
         """Return the nodes that are not available and that a tree can need, by id.
 
-        They are ``goals`` and, recursively, preconditions of their achievers and nodes that may serve.
+        They are ``goals`` and, recursively, the preconditions of achievers and the nodes that may serve.
         """
         needed = set(goals)
         stack = list(needed)
@@ -146,10 +147,10 @@ class _NearestStandIns:
     ) -> "dict[int, _Step]":
         """Return the cheapest last step to each node of ``needed`` that can be made, by id.
 
-        A unit costs the costs of its inputs, combined by ``combine``. With ``max``, the cost of a node is a
-        lower bound on the dissimilarity of making it (h_max; Bonet and Geffner 2001). With ``sum``, the steps
-        lead to a good tree (h_add). Computed by Knuth's generalization of Dijkstra's algorithm (Information
-        Processing Letters 6, 1977).
+        The cost of a unit is computed by ``combine`` from the costs of its inputs. With ``max``, the cost of
+        a node is a lower bound on the dissimilarity of making it (h_max; Bonet and Geffner 2001). With
+        ``sum``, the steps lead to a good tree (h_add). The algorithm is Knuth's generalization of Dijkstra's
+        (Information Processing Letters 6, 1977).
         """
         served_by: defaultdict[int, list[tuple[int, int]]] = defaultdict(list)
         consumers: defaultdict[int, list[int]] = defaultdict(list)

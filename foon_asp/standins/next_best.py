@@ -13,9 +13,9 @@ class UsedStandIn(NamedTuple):
     """A stand-in of a tree, by ids: the serving node is used in place of the served one.
 
     ``unit``: the unit of the stand-in.
-    ``next_best``: the cheapest other node that may serve, by id, with its dissimilarity. It is chosen among
-    nodes of the kitchen and nodes that the tree makes without this stand-in; the smaller id decides ties.
-    ``None`` if none of them may serve.
+    ``next_best``: the cheapest other node that may serve, by id, and its dissimilarity. It has to be in the
+    kitchen, or made by the tree without this stand-in. Among equally cheap nodes, the smallest id is chosen.
+    ``None`` if no such node may serve.
     """
 
     unit: int
@@ -48,7 +48,10 @@ def stand_ins_of(problem: Problem, tree: Collection[int]) -> list[UsedStandIn]:
 
 
 def _nodes_made(problem: Problem, units: Collection[int]) -> set[int]:
-    """Return the nodes, by id, of the kitchen and those that units make from it, as far as they execute."""
+    """Return the nodes, by id, that are in the kitchen or that units make from it.
+
+    Units that cannot run are ignored.
+    """
     made, waiting = set(problem.kitchen), list(units)
     while ready := [unit for unit in waiting if made.issuperset(problem.needs[unit])]:
         made.update(o for unit in ready for o in problem.gives[unit])

@@ -40,9 +40,9 @@ class NodePrices:
         return None if price is None else int(price * self.scale)
 
     def servers_of(self, served: int) -> dict[int, int]:
-        """Return the price of each node, by id, that may stand in for a node of the network; cached.
+        """Return the price of each node, by id, that may stand in for the node ``served``; cached.
 
-        ``served`` is the id of the latter, which is omitted itself.
+        ``served`` is an id and is omitted itself.
         """
         servers = self._servers.get(served)
         if servers is None:
@@ -50,9 +50,9 @@ class NodePrices:
         return servers
 
     def servers_of_node(self, node: ObjectNode) -> dict[int, int]:
-        """Return the price of each node, by id, that may stand in for ``node``, a node of any network.
+        """Return the price of each node of the network, by id, that may stand in for ``node``.
 
-        ``node`` itself is omitted.
+        ``node`` may be of another network. If it is in the network, it is omitted itself.
         """
         objects, by_label = self._objects, self._by_label
         labels = (
@@ -106,8 +106,8 @@ class NodePrices:
     def _name_price(self, edit: Edit, name: str) -> int | None:
         """Return the price of an edit that adds or removes a name; ``None`` if the table forbids it.
 
-        The name is a state or an ingredient. If it has a price of its own for this edit, that is the price.
-        Otherwise, it is the price of the edit.
+        The name is a state or an ingredient. If the table has a price for this name and edit, return this
+        price. Otherwise, return the price of the edit.
         """
         price = self._words.get((edit, name), -1)
         return self._edits[edit] if price == -1 else price
@@ -117,9 +117,9 @@ class NodePrices:
     ) -> int | None:
         """Return the price of the differences between two contents, given by their ingredients.
 
-        If the ingredients are equal, the contents differ in a word such as *in*. If at most half of the
-        ingredients of the longer list are common, the price of :attr:`Edit.CONTENTS` is added. Return
-        ``None`` if the table forbids a difference.
+        If the ingredients are equal, the contents differ in a word such as *in*. The price of
+        :attr:`Edit.CONTENTS` is added if at most half of the ingredients of the longer list are in both.
+        Return ``None`` if the table forbids a difference.
         """
         if ingredients == served_ingredients:
             return self._edits[Edit.WORD]
@@ -153,9 +153,9 @@ class NodePrices:
     ) -> int | None:
         """Return the price of the differences between two sets of relations.
 
-        A container of both sets with another word such as *on* costs the price of a word. Each other
-        container costs that of a container; a container in place of another counts once. Return ``None`` if
-        the table forbids a difference.
+        If both sets have a container, but with other words such as *on*, the price of a word is added. If
+        only one set has a container, the price of a container is added. A container in place of another
+        counts once. Return ``None`` if the table forbids a difference.
         """
         surplus = Counter(relation.object for relation in relations - served_relations)
         lacking = Counter(relation.object for relation in served_relations - relations)

@@ -42,9 +42,9 @@ class Repair:
         """Make the problem of a repair, over the units of a problem's network and of a tree.
 
         ``sources`` has the source of each unit of the tree, and ``table`` the prices of stand-ins. Stand-ins
-        in the network are omitted, and so are rates that differ from those of motions. ``is_available`` says
-        of a node that is not in the network of ``problem`` whether the kitchen has it. Goals that are in no
-        unit are dropped. Raises :class:`UserError` as :func:`with_stand_ins` does.
+        in the network are omitted, and so are rates of single units. ``is_available`` says whether the
+        kitchen has a node that is not in the network of ``problem``. Goals that are in no unit are dropped.
+        Raises :class:`UserError` like :func:`with_stand_ins`.
         """
         original = problem.network
         builder = NetworkBuilder()
@@ -79,8 +79,8 @@ class Repair:
     def over(cls, problem: Problem, steps: tuple[int, ...], table: StandInTable) -> "Repair":
         """Make the problem of a repair for a tree whose units are in the problem's network.
 
-        ``steps`` has these units, by id, each once. The network must have no stand-ins. Raises
-        :class:`UserError` as :func:`with_stand_ins` does.
+        ``steps`` has the units of the tree, by id, each once. The network must have no stand-ins. Raises
+        :class:`UserError` like :func:`with_stand_ins`.
         """
         network = problem.network
         first_marker = len(network.objects)
@@ -94,14 +94,17 @@ class Repair:
         return cls(posed, shown, steps)
 
     def added_units(self, units: Sequence[int]) -> list[int]:
-        """Return those of ``units``, a repaired tree, that are neither ``steps`` nor stand-ins, in order."""
+        """Return the units of a repaired tree, in order, that are neither ``steps`` nor stand-ins.
+
+        ``units`` is the repaired tree.
+        """
         motions, steps = self.posed.network.motions, frozenset(self.steps)
         return [unit for unit in units if unit not in steps and motions[unit] != STAND_IN]
 
     def unmakeable_nodes(self) -> list[int]:
-        """Return the goals and preconditions of steps that cannot be made, even with stand-ins, ascending.
+        """Return goals and preconditions of steps that cannot be made, even with stand-ins, as ascending ids.
 
-        They are ids. Nodes that steps would make are omitted, unless there are no others.
+        Nodes that a step would make are omitted, unless all are such nodes.
         """
         available = reach(self.posed).available
         made = {o for unit in self.steps for o in self.shown.gives[unit]}

@@ -24,9 +24,9 @@ def read_stand_ins(
 ) -> StandInTable:
     """Return the default table of prices, changed by files; a later file takes precedence.
 
-    The files ``similar``, lexicons, are read before all ``files``. Of lexicons, only pairs are read, and
-    those with a label in ``utensils`` are ignored. So a tool or vessel stands in only if one of the ``files``
-    lists it. Raises :class:`InputError` if a file is malformed.
+    The files ``similar`` are lexicons, and are read before ``files``. Only their pairs are read. Pairs with a
+    label in ``utensils`` are ignored, so a tool or vessel stands in only if one of ``files`` lists it. Raises
+    :class:`InputError` if a file is malformed.
     """
     table = StandInTable.usual()
     for file in similar:
@@ -59,8 +59,8 @@ def _update_table(table: StandInTable, rows: Sequence[Row[Entry, Fraction | None
 def _read_row(name: str, value: str, column: int) -> tuple[Entry, Fraction | None]:
     """Return the edit or pair of a row, and its price; the price is ``None`` for the word ``never``.
 
-    ``name`` is the first column of the row, and ``value`` the others, from ``column`` on. A pair has three
-    columns: ``value`` then has the served name, a tab and the price. Raises :class:`LineError` if the row is
+    ``name`` is the first column of the row. ``value`` is the text after it, which begins at ``column``. For a
+    pair, ``value`` has the served name, a tab and the price. Raises :class:`LineError` if the row is
     malformed.
     """
     served, tab, written = value.rpartition("\t")
@@ -76,10 +76,9 @@ def _read_row(name: str, value: str, column: int) -> tuple[Entry, Fraction | Non
 
 
 def _read_edit(name: str) -> Edit | tuple[Edit, str]:
-    """Return the edit of a name such as ``word`` or ``more state: dirty``; in the latter case, a pair.
+    """Return the edit of a name such as ``word``; for ``more state: dirty``, a pair of edit and word.
 
-    The pair has the edit, and the state or ingredient after the colon. Raises :class:`LineError` for other
-    names.
+    The word is the state or ingredient after the colon. Raises :class:`LineError` for other names.
     """
     edit_name, colon, word = (text.strip() for text in name.partition(":"))
     if edit_name not in (_NAMED if colon else _KINDS) or (colon and not word):

@@ -119,9 +119,10 @@ class StoreBuilder:
     def final_outputs(self, units: Mapping[int, Source]) -> list[ListedObject]:
         """Return the final outputs of the last unit of each file, as entries of a goals file.
 
-        Final outputs are those that no unit needs; :func:`~foon_asp.text.assumed_goals.final_outputs` says
-        which are returned if all are needed. ``units`` are the ids of the last units, each with its source.
-        An entry has the source of the first unit that makes it. Writes all waiting rows before it reads.
+        Final outputs are those that no unit needs. If all are needed,
+        :func:`~foon_asp.text.assumed_goals.final_outputs` says which are returned. ``units`` are the ids of
+        the last units, each with its source. An entry has the source of the first unit in ``units`` that
+        makes it. All waiting rows are written first.
         """
         self._write_all_rows()
         statement = "SELECT inputs, outputs FROM unit WHERE id = ?"
@@ -154,7 +155,7 @@ class StoreBuilder:
         """Write the remaining rows, the indexes, the starting kitchen, the parameters and the digests.
 
         Nothing can be added afterwards, as the ids are removed from memory. Prices of units that were not
-        added are left out; nodes of ``amounts`` that no unit has are added.
+        added are left out. If ``amounts`` has nodes of no unit, they are added.
 
         Parameters:
             goals: The entries of the goals file, or the assumed goals.
@@ -305,7 +306,7 @@ class StoreBuilder:
     def _write_starting(self) -> None:
         """Write the starting kitchen, which is the union of the starting kitchens of the files.
 
-        Marks its nodes, and records the files that grant a node although one of their units makes it.
+        Its nodes are marked. A file may grant a node that one of its units makes; such files are recorded.
         """
         for file in self._files.values():
             rows = self._database.execute(UNITS_OF_FILE, (file,))

@@ -26,12 +26,11 @@ class Producers(Protocol):
 class Cone:
     """The units that goals can need, as far as they were read. Ids are those in the whole network.
 
-    A node is needed if it is a goal, or if a unit of the cone needs it under the container rule with its
-    ``utensils``.
+    A node is needed if it is a goal, or an input that a unit of the cone needs. The container rule, with its
+    ``utensils``, says which inputs a unit needs.
 
     ``units``: the units that were read.
-    ``open``: the needed nodes that are not ``available`` and whose producers were not read yet. Every other
-    needed node is available, or all its producers were read.
+    ``open``: the needed nodes that are not ``available`` and whose producers were not read yet.
     """
 
     def __init__(
@@ -60,8 +59,8 @@ class Cone:
     def grow(self, objects: Iterable[int], max_units: int | None = None) -> None:
         """Read the units that make the open nodes among ``objects``, then the units that make their inputs.
 
-        This continues backwards, breadth first. ``max_units``: about how many units are added before it
-        stops; ``None`` for no limit. Nodes of which all producers were read are open no more.
+        This continues backwards, breadth first, until about ``max_units`` units are added. ``None`` is no
+        limit. A node is no longer open once all its producers were read.
         """
         queue = deque(objects)
         target_size = None if max_units is None else len(self.units) + max_units

@@ -80,8 +80,8 @@ def content_digests(
 def _digest_of_lists(level: str, *lists: Iterable[str]) -> str:
     """Return the SHA-256 digest of a list in JSON: a level, then one list for each of ``lists``.
 
-    Members of lists are JSON already. They are joined in batches, so that long lists are never in memory as
-    one text.
+    The members of ``lists`` are texts in JSON. They are joined in batches, so that a long list is never in
+    memory as one text.
     """
     digest = hashlib.sha256(f"[{level}".encode())
     for members in lists:

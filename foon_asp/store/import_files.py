@@ -130,9 +130,9 @@ def _assumed_goals(
 def _new_database(store: Path) -> Iterator[sqlite3.Connection]:
     """Yield a new database in one transaction; at a normal end it becomes the store.
 
-    It is committed, gets its digest appended, and replaces ``store``, whose permissions it gets. After an
-    error it is removed. The database is a single file in the folder of the store. If this process is killed,
-    a later import removes the file. Raises :class:`UserError` if another import is writing the store.
+    At this end, the transaction is committed and the digest is appended. Then the file of the database
+    replaces ``store`` and gets its permissions. After an error, the file is removed. If this process is
+    killed, a later import removes the file. Raises :class:`UserError` if another import is writing the store.
     """
     store = Path(os.path.realpath(store))  # a link stays one
     partial = store.with_name(f".{store.name}.partial")

@@ -30,8 +30,8 @@ def labels_beginning(database: sqlite3.Connection, start: str, max_labels: int) 
 def similar_labels(database: sqlite3.Connection, label: str, max_labels: int) -> list[str]:
     """Return at most ``max_labels`` labels similar to ``label``, the most similar first.
 
-    Only labels that share rare trigrams with ``label`` are compared, at most
-    :attr:`.StoreTuning.compared_labels`. Without an index of trigrams, all labels are compared.
+    At most :attr:`.StoreTuning.compared_labels` labels are compared: labels that share rare trigrams with
+    ``label``. Without an index of trigrams, all labels are compared.
     """
     text = f" {_searchable(label).lower()} "
     trigrams = sorted({text[start : start + 3] for start in range(len(text) - 2)})

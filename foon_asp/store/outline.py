@@ -86,7 +86,7 @@ class Outline:
     def nodes_named(self, word: str) -> Mask:
         """Return the mask of the nodes that have the word as their label or in the text of their contents.
 
-        Every node with the word as an ingredient is in it, and others may be. Masks are kept for further
+        The mask has every node with the word as an ingredient, and maybe others. Masks are kept for further
         calls.
         """
         mask = self._named_masks.get(word)
@@ -98,8 +98,8 @@ class Outline:
     def units_with_traits(self, traits: Iterable[Trait], kitchen: Mask) -> Mask:
         """Return the mask of the units that may have all of the traits.
 
-        Names are searched in the text of contents, so the mask may have further units. ``kitchen`` is the
-        mask of the nodes that do not count for :attr:`.Role.MADE`.
+        Names are searched in the text of contents, so the mask may have further units. For the trait
+        :attr:`.Role.MADE`, nodes in the mask ``kitchen`` do not count.
         """
         mask = np.ones(len(self.motions), dtype=np.bool_)
         for role, word in traits:
@@ -137,8 +137,8 @@ class Outline:
         ``costs``: by motion, the cost of its units.
         ``max_distance``: the maximum; greater distances become :data:`FAR`.
         ``free``: the units whose distance is 0.
-        ``limit``: a function that is called in each round with the distances found so far. If it returns less
-        than the maximum, this is the maximum of all distances found from then on. ``None`` for no function.
+        ``limit``: a function that may lower the maximum in each round of the search. It gets the distances
+        found so far, and returns a maximum for later ones. ``None`` for no function.
         """
         node_distances = np.where(available, 0, FAR)
         distances = np.where(free, 0, FAR)
@@ -169,8 +169,8 @@ class Outline:
     def units_leading_to(self, units: Mask, available: Mask, candidates: Mask) -> Mask:
         """Return the mask of ``units`` and of the candidates through which their inputs can be made.
 
-        A candidate is in the mask if it produces a node that is not ``available`` and that is an input of
-        another unit in the mask.
+        A candidate is in the mask if it makes an input of another unit in the mask, and this input is not
+        ``available``.
         """
         mask = units.copy()
         new = np.flatnonzero(mask)
@@ -227,14 +227,17 @@ class _Lists:
         return np.unique(self.entries[self.positions_of(lists)[0]]).astype(np.int64)
 
     def inverse(self, size: int) -> "_Lists":
-        """Return for each number below ``size`` the list of the lists that contain it, ascending."""
+        """Return new lists: list ``n`` has the numbers of the lists with the entry ``n``, ascending.
+
+        There are ``size`` new lists.
+        """
         counts = np.bincount(self.entries, minlength=size).astype(np.uint32)
         return _Lists(counts, self.owners[np.argsort(self.entries, kind="stable")])
 
     def positions_of(self, lists: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Return the positions in ``entries`` of all entries of some lists, and for each position its list.
+        """Return the positions in ``entries`` of all entries of ``lists``, and for each position its list.
 
-        ``lists`` are the numbers of the lists.
+        Lists are given by their numbers.
         """
         lengths = self._lengths[lists].astype(np.int64)
         owners = np.repeat(lists, lengths)

@@ -59,9 +59,9 @@ class Store:
     ``with Store(file) as store:`` closes the store at the end, as :meth:`close` does. Python also closes it
     when nothing refers to it any more.
 
-    Methods read only what they need, so their time does not grow with the network; :meth:`read_whole` and
-    :attr:`outline` read it all. Opening and each method raise :class:`UserError` for a file that is no store,
-    has another version of the format or is damaged.
+    Methods read only what they need, so their time does not grow with the network. Only :meth:`read_whole`
+    and :attr:`outline` read the whole network. Opening and each method raise :class:`UserError` for a file
+    that is no store, has another version of the format or is damaged.
     """
 
     level = 3
@@ -197,7 +197,7 @@ class Store:
     def unpriced(
         self, motions: Container[str], units: Iterable[FunctionalUnit], from_file: bool
     ) -> list[Unpriced]:
-        """Return for each motion with unpriced units how many there are, and the source of the first.
+        """Return each motion of unpriced units, with their number and the source of the first one.
 
         Motions are in the order of their first unpriced units. Units that have one of ``motions`` or are
         among ``units`` count as priced. ``from_file`` says whether prices of the imported file count as well.
@@ -288,7 +288,7 @@ class Store:
     def _labelled_ids(self, label: str, where: str = "1", *columns: str) -> Iterator[int]:
         """Yield the ids of the nodes with a label, ascending.
 
-        ``where`` is a further condition in SQL, with ``columns`` for its question marks.
+        ``where`` is a further condition in SQL; ``columns`` are the values for its question marks.
         """
         statement = (
             f"SELECT id FROM node WHERE label = (SELECT id FROM label WHERE name = ?) AND {where} ORDER BY id"
@@ -322,7 +322,7 @@ class Store:
     def nodes_where(self, condition: str, *values: object) -> frozenset[int]:
         """Return the ids of the nodes that meet a condition in SQL on the columns of the table ``node``.
 
-        ``values`` are those for its question marks.
+        ``values`` are the values for the question marks of the condition.
         """
         return frozenset(
             o for (o,) in self._database.execute(f"SELECT id FROM node WHERE {condition}", values)
@@ -439,8 +439,7 @@ class Store:
     ) -> list[list[int]]:
         """Return, for each of the units, the ids of the nodes that it needs under a container rule.
 
-        ``utensils`` are the labels of utensils for this rule. The rows of the units and of their inputs are
-        kept.
+        ``utensils`` are the labels of utensils for this rule. All rows that are read are kept.
         """
         self.read_units(units)
         inputs = [self._unit_row(unit)[1] for unit in units]
@@ -464,10 +463,9 @@ class Store:
     ) -> Cone:
         """Read the cone of goals: backwards through all producers, stopping at ``available`` nodes.
 
-        ``utensils`` are those of the container rule. Every irredundant optimal tree for these goals consists
-        of units of the cone. A unit counts as a producer of all its outputs, whether or not it makes them
-        under the rule; so the cone may have more units than needed. With ``max_units``, reading stops after
-        about as many units.
+        ``utensils`` are those of the container rule. Every irredundant optimal tree for the goals consists of
+        units of the cone. The cone may have more units, since a unit counts as a producer of all its outputs
+        under every container rule. With ``max_units``, reading stops after about this number of units.
         """
         cone = Cone(goals, self, containers, utensils, available)
         cone.grow(sorted(cone.open), max_units)
@@ -525,7 +523,7 @@ class Store:
         objects: Sequence[ObjectNode],
         ids: Mapping[int, int] | range,
     ) -> Network:
-        """Build a network of rows of units with their sources, and of nodes.
+        """Build a network from rows of units, the sources of each unit, and nodes.
 
         ``ids`` are the new ids of the nodes by their ids in the store. Raises :class:`ValueError` if a node
         or unit is there twice, or if a unit lists a node twice.

@@ -70,7 +70,7 @@ class StoreFile:
     def rows(self, statement: str, ids: Iterable[int]) -> sqlite3.Cursor:
         """Run a statement, and return a cursor over its rows.
 
-        ``IN ids`` in the statement means being one of the ``ids``.
+        In the statement, ``IN ids`` is true for the members of ``ids``.
         """
         in_list = "IN (SELECT value FROM json_each(?))"
         return self.database.execute(statement.replace("IN ids", in_list), (json.dumps([*ids]),))
@@ -102,7 +102,7 @@ class StoreFile:
         raise UserError(f"{self.file}: the store is damaged ({damage}); import its source files again")
 
     def _check_header(self) -> None:
-        """Raise :class:`UserError` for a file that is no store of this version, or not of its stated size.
+        """Raise :class:`UserError` for a file that is no store of this version, or is not of its stated size.
 
         This is checked before SQLite reads the file.
         """
@@ -151,10 +151,10 @@ Reader = TypeVar("Reader", bound=_Reading)
 def reporting_damage(
     read: Callable[Concatenate[Reader, Parameters], Value],
 ) -> Callable[Concatenate[Reader, Parameters], Value]:
-    """Decorate a method so that damage of the store that it meets is raised as :class:`UserError`.
+    """Decorate a method so that it raises :class:`UserError` for a damaged store.
 
-    Damage is any error that values of a wrong type, length or id lead to. A :class:`UserError` of the method
-    stays as it is.
+    Any error that comes from values of a wrong type, length or id counts as damage. A :class:`UserError` of
+    the method stays as it is.
     """
 
     @functools.wraps(read)

@@ -12,9 +12,8 @@ class StoreTuning(NamedTuple):
     ``cached_attributes``: distinct lists of states, relations or contents that are kept in memory after
     reading.
     ``digest_texts``: texts that are joined before they are added to a digest.
-    ``cone_nodes``: nodes whose producers one query reads; a cone reads the producers of up to as many nodes
-    too many.
-    ``compared_labels``: labels that share the rarest trigrams with a wanted one, which are compared in full.
+    ``cone_nodes``: nodes whose producers one query reads. A cone with a limit may not use all of them.
+    ``compared_labels``: labels that are compared in full with a wanted one, whose rarest trigrams they share.
     """
 
     rows_per_write: int = 1_000

@@ -17,13 +17,12 @@ class UnitDistances:
     """The distances of all units of a network: lower bounds on the cost of a tree that has the unit.
 
     The distance of a unit is its cost plus the largest distance of its inputs. The distance of a node is the
-    least one of its producers (``h_max`` of Bonet and Geffner, Artificial Intelligence 129, 2001). Two masks
-    have the nodes whose distance is 0: ``kitchen`` those that are available, ``skipped`` those that units do
-    not need.
+    least one of its producers (``h_max`` of Bonet and Geffner, Artificial Intelligence 129, 2001). It is 0
+    for nodes in the mask ``kitchen``, which are available, and in ``skipped``, which units do not need.
 
-    The cost of a unit is 1. If ``objective`` is ``success`` and there are ``rates``, it is the negative
-    logarithm of the rate of its motion, scaled to an integer and rounded down. A motion without a rate then
-    costs 0.
+    The cost of a unit is usually 1. For the ``objective`` ``success`` with ``rates``, it is the negative
+    logarithm of the rate of the motion. This cost is scaled to an integer and rounded down. A motion without
+    a rate then costs 0.
     """
 
     def __init__(
@@ -60,11 +59,11 @@ class UnitDistances:
         ``kinds``: masks of units.
         ``executed``: the ids of units that cost nothing.
         ``max_units``: how many units of each kind are chosen at most.
-        ``max_steps``: how many steps a chosen unit may be farther than the greatest of the kinds' least
-        distances. A step is the cost of one unit, or for ``success`` 1/8 of a natural logarithm.
+        ``max_steps``: how many steps farther a chosen unit may be than the nearest unit of the farthest kind.
+        A step is the cost of one unit, or for ``success`` 1/8 of a natural logarithm.
 
         The first list has the ids of all chosen units and of units that lead to them. The second list has the
-        least distance of each kind, or :data:`FAR` if none of its units can be reached.
+        least distance of each kind. It is :data:`FAR` if no unit of the kind can be reached.
         """
         free_units, surplus = self._outline.unit_mask(executed), max_steps * self._step
         unit_ids = [np.flatnonzero(kind) for kind in kinds]
@@ -87,10 +86,10 @@ class UnitDistances:
     def relevant_units(
         self, kinds: Sequence[Mask] | None, executed: Collection[int], max_cost: int
     ) -> list[int]:
-        """Return the ids of units that may be in a cheap enough tree that has a unit of one of the kinds.
+        """Return the ids of units that may be in a cheap enough tree with a unit of one of the kinds.
 
-        These are the units of the ``kinds`` with a distance of at most ``max_cost``, and units with such a
-        distance that lead to them.
+        These are the units of the ``kinds``, and the units that lead to them. All have a distance of at most
+        ``max_cost``.
 
         ``kinds``: masks of units; ``None`` if the tree may have any units.
         ``executed``: the ids of units that cost nothing; they are not returned.
@@ -120,18 +119,18 @@ class UnitDistances:
 
 
 def least_cost(rate: Fraction) -> int:
-    """Return a lower bound on the cost of a rate above 0: its negative natural logarithm times 2**40.
+    """Return an integer that is a lower bound on the cost of a rate above 0.
 
-    The bound is rounded down to an integer.
+    The cost is the negative natural logarithm of the rate, times 2**40.
     """
     exact, error = _logarithm(rate)
     return max(0, math.floor(exact) - error)
 
 
 def greatest_cost(rate: Fraction) -> int:
-    """Return an upper bound on the cost of a rate above 0: its negative natural logarithm times 2**40.
+    """Return an integer that is an upper bound on the cost of a rate above 0.
 
-    The bound is rounded up to an integer.
+    The cost is the negative natural logarithm of the rate, times 2**40.
     """
     exact, error = _logarithm(rate)
     return math.ceil(exact) + error

@@ -1,9 +1,9 @@
 """Words and numbers that hide a meaning: ``python -m tests.docs.words``, a part of `make lint`, lists them.
 
 A name says what it holds, in a term of planning, linear programming, answer-set programming or FOON; a
-docstring begins with what is done or returned. docs/dev/words.md has the terms. A number stands where it is
-used, is a default of a parameter, or a field of the class that says what it limits or steers; a constant of a
-module is the exception.
+docstring begins with what is done or returned, and its references have their nouns. docs/dev/words.md has the
+terms. A number stands where it is used, is a default of a parameter, or a field of the class that says what
+it limits or steers; a constant of a module is the exception.
 """
 
 import ast
@@ -50,6 +50,12 @@ EMPTY_NAMES = frozenset(
     }
 )
 OPENINGS = re.compile(r"(Give|Say|Tell|Note|Know|Let|Ask|Hear|Leave)s?\b")
+
+# References whose noun the reader has to look for: "of those that", "so many".
+REFERENCES = re.compile(
+    r"\bof (these|those)(?=[.,;:)]|\s+(that|which|who|whose|are|is|and|or|to|in|on|with|for|has|have)\b)"
+    r"|\bof (theirs|ours)\b|\bso many\b|\bthat which\b"
+)
 
 # Names that are allowed all the same, with where and why.
 EXCEPTIONS = {
@@ -157,10 +163,11 @@ def remarks(file: Path) -> Iterator[str]:
                 line = getattr(node, "lineno", 1)
                 yield f"{file.relative_to(ROOT)}:{line}: the name {name!r} does not say what it holds"
         if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
-            opening = OPENINGS.match(ast.get_docstring(node) or "")
-            if opening:
-                line = getattr(node, "lineno", 1)
+            docstring, line = ast.get_docstring(node) or "", getattr(node, "lineno", 1)
+            if opening := OPENINGS.match(docstring):
                 yield f"{file.relative_to(ROOT)}:{line}: a docstring begins with {opening.group()!r}"
+            for reference in REFERENCES.finditer(docstring):
+                yield f"{file.relative_to(ROOT)}:{line}: {reference.group()!r} lacks its noun"
     allowed = {name for names in NUMBERS.values() for name in names.split()}
     for line, name in numbers(file):
         if name not in allowed:
