@@ -56,9 +56,9 @@ def assemble(
 ) -> Program:
     """Return the program of a question: the encodings and constraints of settings, read and checked.
 
-    ``used_up`` selects the encodings of plans, in which items are used up. ``warn`` receives warnings; with a
-    ``problem``, also about names in rules that its network does not have. If grounding user rules may not
-    terminate, a worker process is started in advance.
+    ``used_up`` selects the encodings of plans, in which items are used up. ``warn`` receives warnings. With a
+    ``problem``, it is also warned of names in rules that the network of the problem lacks. If grounding user
+    rules may not terminate, a worker process is started in advance.
 
     A folder that replaces the built-in encodings may lack files; the built-in ones are loaded in their place.
     A constraint that is passed twice is loaded once. Relaxed constraints are checked, but only their
@@ -162,13 +162,17 @@ def program_of(problem: Problem, settings: Settings, warn: Callable[[str], None]
 def ready_made_program(problem: Problem, settings: Settings, warn: Callable[[str], None]) -> Program | None:
     """Return the program of a question whose user rules are all ready-made constraints, without clingo.
 
-    Ready-made constraints come with this program, so their effect is computed without their text: ``files``
-    are without them, and ``ready_made`` has them. ``warn`` receives warnings about their parameters.
+    Ready-made constraints come with this program, so their effect is computed without their text. Therefore
+    ``files`` of the result has no constraints; ``ready_made`` has them. ``warn`` receives warnings about
+    their parameters.
 
-    Returns ``None`` without user rules, if there are other rules, rewritten rules, bounds or other encodings,
-    and without reductions. Also returns ``None`` if items are used up, or if the rules mean something else
-    for clingo in this problem. In a large network, it is ``None`` unless the network is a part of a store or
-    the rules require units.
+    Returns ``None`` in any other case:
+
+    - there are no user rules, or other rules than ready-made constraints;
+    - there are rewritten rules or bounds, replaced encodings or no reductions;
+    - items are used up;
+    - the rules mean something else for clingo in this problem;
+    - the network is large, unless it is a part of a store or the rules require units.
     """
     rules = _ready_made_rules(settings)
     if rules is None or problem.items is not None:
@@ -202,8 +206,8 @@ def _warn_of_names(
 ) -> None:
     """Warn of names in rules, measures and parameters that the network of a problem does not have.
 
-    Parameters are the constants of ready-made constraints. ``added`` are the encodings of all constraints,
-    and ``constants`` the constants that are set, as ``NAME=VALUE``. Without a problem, nothing is checked.
+    Parameters are the constants of ready-made constraints. ``added`` are the encodings of all constraints.
+    ``constants`` are the constants that are set, as ``NAME=VALUE``. Without a problem, nothing is checked.
     """
     if problem is None:
         return
@@ -240,8 +244,8 @@ def _is_built_in(encoding: "Encoding") -> bool:
 def _ready_made_rules(settings: Settings) -> "ReadyMade | None":
     """Return the user rules if all are ready-made constraints, else ``None``.
 
-    Return ``None`` also without rules, without reductions, with other encodings, and with rewritten
-    constraints or bounds.
+    Also return ``None`` without rules, without reductions, with replaced encodings, with rewritten rules and
+    with bounds.
     """
     if not settings.constraints or not settings.reductions or settings.replaced is not None:
         return None
@@ -255,8 +259,8 @@ def _ready_made_rules(settings: Settings) -> "ReadyMade | None":
 def _optional_predicates(encodings: "Sequence[Encoding]") -> frozenset[tuple[str, str]]:
     """Return the predicates that user rules read and that have facts only in some questions.
 
-    Each is a pair of the predicate's name and its first argument, such as ``("cost", "price")``. The first
-    argument is empty if it is no name.
+    Each is a pair of the predicate's name and its first argument, such as ``("cost", "price")``. If the first
+    argument is no name, the pair has an empty text.
     """
     predicates: set[tuple[str, str]] = set()
     for encoding in encodings:
@@ -317,10 +321,10 @@ def reach_of_rules(settings: Settings) -> ReachOfRules:
 def hold_for_subtrees(settings: Settings) -> bool:
     """Whether the user rules are antimonotone: if a tree keeps to them, each of its subtrees does, too.
 
-    This has to be so in every part of the network, and also if more object nodes are available than the
-    kitchen has. It is true without rules, and false with replaced encodings, for rules that are not local,
-    and for rules beside rewritten ones. Rewritten rules alone are not looked at. Raises as :func:`assemble`
-    does.
+    ``True`` means that they are so in every part of the network, and also if more object nodes are available
+    than the kitchen has. The result is true without rules. It is false with replaced encodings, for rules
+    that are not local, and for rules beside rewritten rules. Rewritten rules themselves are ignored. Raises
+    as :func:`assemble` does.
     """
     if settings.replaced is not None:
         return False
@@ -333,8 +337,8 @@ def hold_for_subtrees(settings: Settings) -> bool:
 def need_clingo(settings: Settings) -> bool:
     """Whether clingo has to enforce user rules, since they do more than remove and require units.
 
-    Return ``False`` without rules, and for rules that are not analysed: rewritten ones, and those beside
-    replaced encodings. Raises as :func:`assemble` does.
+    Return ``False`` without rules, and for rules that are not analysed. Rules are not analysed if they are
+    rewritten, or if encodings are replaced. Raises as :func:`assemble` does.
     """
     rules = _ready_made_rules(settings) or _analysed_rules(settings)
     return rules is not None and bool(rules.unsettled)
@@ -353,9 +357,10 @@ def rules_for_varying_kitchens(settings: Settings) -> "Rules | None":
 def need_whole_network(problem: Problem, settings: Settings) -> bool:
     """Whether user rules may be about units beyond those that the goals can need.
 
-    Then a part of a store is not enough for the question. A part is enough without user rules, or if every
-    rule is local and none requires units that no goal needs. Return ``True`` for other rules, with replaced
-    encodings, if items are used up, and if the network is whole already.
+    If so, a part of a store is not enough for the question. Return ``False`` without user rules and replaced
+    encodings. Also return ``False`` for rules over a part of a store if each rule is local, and none requires
+    units that no goal needs. Otherwise return ``True``, also with replaced encodings and if items are used
+    up.
     """
     if not settings.constraints and settings.replaced is None:
         return False
@@ -368,8 +373,8 @@ def rules_digest(
 ) -> dict[str, str]:
     """Return ``{"rules": DIGEST}`` with a digest of the user rules, constants and encodings.
 
-    The result is empty without any of them. The digest has 16 hexadecimal digits. Every row of results has
-    it. Warns and raises as :func:`assemble` does.
+    The digest has 16 hexadecimal digits; every row of results has it. Without user rules, constants and
+    replaced encodings, the result is empty. Warns and raises as :func:`assemble` does.
     """
     if not (settings.constraints or settings.constants or settings.encodings):
         return {}
@@ -402,8 +407,8 @@ def _is_ready_made(constraint: Constraint) -> bool:
 def _clingo_options(options: tuple[str, ...]) -> tuple[str, ...]:
     """Return clingo's options: the defaults that the user did not set, then the user's ``options``.
 
-    Raises :class:`UserError` for a word that is no option, and for an option, perhaps abbreviated, that would
-    change what an answer means.
+    Raises :class:`UserError` for a word that is no option. Also raises it for an option, perhaps abbreviated,
+    that would change what an answer means.
     """
     names = [option.partition("=")[0] for option in options]
     for option, name in zip(options, names, strict=True):

@@ -18,8 +18,9 @@ _OF_DOERS = {("rate", 2), ("risk", 2), ("_takes_over", 2), ("_by_person", 1)}
 def assistance_bounds(twins: Mapping[int, int], max_assisted: int) -> Bounded:
     """Return bounds by which a person does at most ``max_assisted`` units, and no unit is done twice.
 
-    ``twins`` maps each unit that the person does to the same unit done by the robot, by ids in the whole
-    network. The result is for ``bounded`` of :class:`foon_asp.asp.Settings`.
+    Each unit that the person can do has a twin, the same unit done by the robot. ``twins`` maps the id of the
+    former to that of the latter; ids are those in the whole network. The result is for ``bounded`` of
+    :class:`foon_asp.asp.Settings`.
     """
     return Bounded(write_assisted(twins, max_assisted), (question_encoding("assist.lp"),))
 
@@ -41,8 +42,9 @@ def read_who_does_units(constraints: Sequence[Constraint]) -> bool:
 def require_local(settings: Settings) -> None:
     """Raise :class:`UserError` for constraints that are not local, or that name a unit by number.
 
-    A constraint is local if units outside the tree do not matter for it. Other constraints would be wrong if
-    a unit may exist twice: done by the robot and by a person. The error has the place of the first such rule.
+    A constraint is local if units outside the tree do not matter for it. Other constraints would be wrong,
+    since a unit may exist twice: done by the robot and by a person. The error has the place of the first
+    faulty rule.
     """
     from foon_asp.encoding.encoding import read_encoding  # noqa: PLC0415 (takes clingo along)
     from foon_asp.rules.numbered_units import numbered_unit  # noqa: PLC0415

@@ -9,9 +9,9 @@ from foon_asp.problem import Costs, Objective
 
 
 def better_than(incumbents: Iterable[Costs], objectives: Iterable[Objective]) -> Bounded:
-    """Return bounds that a tree meets if, for each incumbent, it is better by at least one objective.
+    """Return bounds that a tree meets if it is better than each incumbent by at least one objective.
 
-    They exclude the trees that an incumbent dominates. The objectives must not include ``success``. The
+    The bounds exclude the trees that an incumbent dominates. The objectives must not include ``success``. The
     result is for ``bounded`` of :class:`foon_asp.asp.Settings`. Raises :class:`UserError` for numbers beyond
     those of clingo.
     """
@@ -23,6 +23,6 @@ def better_than(incumbents: Iterable[Costs], objectives: Iterable[Objective]) ->
 
 
 def _integer_bounds(bounds: Iterable[Mapping[Objective, int]]) -> Bounded:
-    """Return bounds from mappings of objectives to integers: a tree has to meet one bound of each mapping."""
+    """Return bounds from mappings of objectives to integers: a tree has to meet a bound of each mapping."""
     rules = "".join(write_at_most(number, bound) for number, bound in enumerate(bounds))
     return Bounded(rules, (question_encoding("at_most.lp"),))

@@ -25,8 +25,10 @@ class BareProgram(NamedTuple):
 
     ``files``: the encodings and constraints.
     ``constants``: the arguments that set constants.
-    ``facts``, ``rules``: the facts, and the rules that are in no file. They are the text of one more file, as
-    ``foon-asp facts`` prints it.
+    ``facts``: the facts of the question.
+    ``rules``: the rules that are in no file.
+
+    Facts and rules are the text of one more file, as ``foon-asp facts`` prints it.
     """
 
     files: tuple[Path, ...]
@@ -45,13 +47,13 @@ def bare_program(
 ) -> BareProgram:
     """Return a program with which bare clingo finds the optimum of a question.
 
-    ``soft`` has the weight of each constraint that may be broken. Then the first objective is the least sum
-    of the weights of broken rules. Under ``success``, clingo compares rounded weights, so its optimum may
-    differ in the last digits. The limits of ``settings`` are ignored. If there is no tree, the program has
-    all units that could matter, so that clingo can prove it.
+    ``soft`` has the weight of each constraint that may be broken. If there is one, the first objective is the
+    least sum of the weights of broken rules. Under ``success``, clingo compares rounded weights, so its
+    optimum may differ in the last digits. The limits of ``settings`` are ignored. If there is no tree, the
+    program has all units that could matter. So clingo can prove that no tree exists.
 
-    Raises :class:`UserError` like :func:`foon_asp.asp.solve`; if items are used up, also for soft constraints
-    and amounts.
+    Raises :class:`UserError` like :func:`foon_asp.asp.solve`. If items are used up, also raises it for soft
+    constraints and for amounts.
     """
     penalty = ""
     # limits of time do not apply to bare clingo
@@ -88,7 +90,10 @@ def bare_program(
 def printable_program(
     problem: Problem, objectives: Sequence[Objective], settings: Settings, soft: Mapping[Constraint, int]
 ) -> BareProgram:
-    """Return the program of :func:`bare_program`; under user rules or encodings, over the whole network."""
+    """Return the program of :func:`bare_program`.
+
+    With user rules or replaced encodings, the program is over the whole network.
+    """
     has_rules = settings.constraints or settings.encodings or soft
     return bare_program(problem.whole if has_rules else problem, objectives, settings, soft)
 
@@ -98,10 +103,10 @@ def bare_plan_program(
 ) -> tuple[BareProgram | None, dict[int, tuple[int, int]]]:
     """Return a program with which bare clingo finds the optimum of a question about plans.
 
-    ``outcome`` is an optimal plan. The program has no facts that limit how often units are executed. The
-    second value maps the id of each unit to two numbers: its id in the whole network, and its greatest number
-    of executions in any plan that is as good by the first objective. Returns ``None`` and an empty mapping if
-    these numbers of executions are unbounded.
+    ``outcome`` is an optimal plan. The program has no facts that limit how often units are executed. These
+    limits are the second value: it maps the id of each unit to a pair. The pair is the unit's id in the whole
+    network, and its greatest number of executions in any plan as good by the first objective. If the numbers
+    of executions are unbounded, the result is ``None`` and an empty mapping.
     """
     settings = settings._replace(deadline=None)
     executions = executions_as_good(outcome, settings)
@@ -118,9 +123,9 @@ def bare_plan_program(
 
 
 def _require_no_amounts(problem: Problem) -> None:
-    """Raise :class:`UserError` if a unit takes or makes several copies of a node.
+    """Raise :class:`UserError` if amounts count: several copies of a node are taken, made or wanted.
 
-    Also if several copies of a goal are wanted. The encodings have one copy of each output.
+    The encodings have one copy of each output.
     """
     if problem.counts_amounts:
         raise UserError("amounts are not built for bare clingo, whose encodings have one copy of each output")

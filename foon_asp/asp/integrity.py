@@ -28,8 +28,8 @@ _PASSED_OVER = {ASTType.Program, ASTType.Comment}
 class IntegrityConstraint(NamedTuple):
     """A rule without a head: its number, the constraint that it belongs to, its source and text.
 
-    ``number`` counts from 1. ``constants`` are the user's settings of constants that occur in the rule:
-    ``NAME=VALUE``.
+    ``number`` counts from 1. ``constants`` are the user's settings, ``NAME=VALUE``, of the constants that
+    occur in the rule.
     """
 
     number: int
@@ -58,15 +58,14 @@ def relax(
 
     Returns the numbered integrity constraints, and the rewritten rules. Without ``soft``, integrity
     constraint number C need not hold if the atom ``_dropped(C)`` is true (``questions/clash.lp``). With
-    ``soft``, it becomes a rule for ``_broken(C,Way)``, where ``Way`` has the values of its variables
-    (``questions/soft.lp``). Other rules of the ``constraints`` stay as they are. ``constants`` are the user's
-    settings of constants. ``deadline`` has the limits of the checks.
+    ``soft``, the integrity constraint becomes a rule for ``_broken(C,Way)``, where ``Way`` has the values of
+    its variables (``questions/soft.lp``). Rules of ``constraints`` with a head stay as they are.
+    ``constants`` are the user's settings of constants. ``deadline`` has the limits of the checks.
 
-    ``before`` are other constraints of the question, which are not rewritten. In messages, the numbers of
-    their texts precede those of ``constraints``. Each constraint is first parsed and grounded without facts,
-    so that its errors are raised with their places. At a limit or ctrl-C, the grounding is skipped and
-    nothing is raised; the deadline records it. Raises as :func:`foon_asp.encoding.encoding.read_encoding`
-    does.
+    ``before`` are constraints of the question that are not rewritten. Messages number rules given as text;
+    the rules of ``before`` come first. Each of the ``constraints`` is parsed and grounded alone, without
+    facts, so that its errors are raised with their places. At a limit or ctrl-C, the grounding is skipped and
+    the deadline records it. Raises as :func:`foon_asp.encoding.encoding.read_encoding` does.
     """
     numbered: list[IntegrityConstraint] = []
     rules: dict[str, Source] = {}
@@ -109,7 +108,7 @@ def _statements(rules: Loaded) -> list[AST]:
 def errors_at_sources(relaxed: Relaxed, text: str) -> Iterator[None]:
     """Return a context in which errors in the rewritten rules are raised with places in the user's files.
 
-    ``text`` is the text given to clingo, which has the rules. Places elsewhere are kept.
+    ``text`` is the text given to clingo, which has the rules. Errors outside these rules keep their places.
     """
     try:
         yield
@@ -132,8 +131,8 @@ def errors_at_sources(relaxed: Relaxed, text: str) -> Iterator[None]:
 def _check_alone(rules: Loaded, deadline: Deadline) -> None:
     """Parse and ground one constraint without facts, to raise its errors with their places.
 
-    Later it is a part of a rewritten text, in which errors have no place. At a limit or ctrl-C, the grounding
-    ends early. Then nothing is raised, and the deadline records the interrupt.
+    Later the constraint is a part of a rewritten text, in which errors have no place. At a limit or ctrl-C,
+    the grounding ends early. Then nothing is raised, and the deadline records the interrupt.
     """
     read_encoding(rules)
     try:  # without facts, for unsafe variables alone
@@ -180,7 +179,7 @@ def _parse_statement(text: str) -> AST:
 def _global_variables(body: Sequence[AST]) -> Iterator[str]:
     """Yield the names of the global variables of a body, with repeats.
 
-    They are those outside the elements of aggregates and outside conditional literals.
+    A variable is global if it occurs outside elements of aggregates and outside conditional literals.
     """
     for literal in body:
         if literal.ast_type == ASTType.ConditionalLiteral:

@@ -22,8 +22,8 @@ def solve(
 
     ``objectives`` are lexicographic; ``units`` decides last. At a limit, the outcome has the best tree or
     plan found. The other parameters are those of :func:`foon_asp.asp.solver.solve`; ``mattered`` and
-    ``solved`` have no effect on plans. Raises :class:`UserError` as that function and
-    :func:`foon_asp.plans.plan_search.solve_used_up` do.
+    ``solved`` have no effect on plans. Raises the errors of that function and of
+    :func:`foon_asp.plans.plan_search.solve_used_up`.
     """
     if problem.items is None:
         return solver.solve(problem, objectives, settings, reporter, mattered, solved)

@@ -52,10 +52,10 @@ class Outcome(NamedTuple):
     ``units``, ``costs``: the tree, as unit ids in an order that executes, and its costs; ``None`` without a
     tree.
     ``bounds``: for each objective in order, the best value that any tree can still have, as far as it is
-    proved. An objective counts only among the trees that are best by those before it.
+    proved. From the second objective on, only trees that are best by the earlier objectives count.
     ``seconds``: the time of each phase.
-    ``encodings``: the folder that replaced the built-in encodings, which then define what is best; else
-    ``None``.
+    ``encodings``: the folder that replaced the built-in encodings, ``None`` without one. Its encodings then
+    define which tree is best.
     ``proof``: what proves an ``optimal`` or ``infeasible`` answer; ``None`` for other answers.
     ``certified``: the objectives, from the first on, by which a certificate proves the tree the best.
     ``left``: the number of units that were left for the search; 0 if no search was needed.

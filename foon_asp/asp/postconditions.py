@@ -152,8 +152,8 @@ class Postconditions:
     def require_no_better(self, harder: Outcome, easier: Outcome, description: str) -> None:
         """Require that the tree of ``harder`` is no better than the proved optimum of ``easier``.
 
-        The question of ``easier`` allows more trees; ``description`` names it in the message. Nothing is
-        checked if its optimum is not proved, or if ``harder`` has no tree.
+        The question of ``easier`` allows more trees; ``description`` names that question in the message.
+        Nothing is checked if ``easier`` has no proof, or if ``harder`` has no tree.
         """
         if harder.costs is None or easier.status not in {Status.OPTIMAL, Status.INFEASIBLE}:
             return
@@ -169,8 +169,8 @@ class Postconditions:
     def _require_bounds(self, outcome: Outcome, costs: Costs) -> None:
         """Require that the bounds allow the tree, and equal its costs if it is called optimal.
 
-        They are compared in the order of the objectives, up to the first one whose bound is missing or better
-        than the cost.
+        Bounds and costs are compared in the order of the objectives. The comparison ends at the first
+        objective without a bound, or whose bound is better than the cost.
         """
         exact = {objective: costs.measure(objective) for objective in self.levels}
         self.require(
@@ -236,7 +236,7 @@ class Postconditions:
     def _question(self) -> str:
         """Return the question as text by which it can be reproduced: a command, and other settings.
 
-        The command is ``foon-asp facts``. Settings that it does not show follow, one on each line.
+        The command is ``foon-asp facts``. Settings that this command does not show follow, each on a line.
         """
         problem, settings = self.problem, self._settings
         words = ["foon-asp", "facts"]

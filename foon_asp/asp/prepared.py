@@ -43,10 +43,10 @@ class Prepared:
     ``reduced``: the result of the reductions; ``None`` if none ran.
     ``stopped``: whether a limit or ctrl-C interrupted the preparation, so that nothing is known.
     ``restricted_problem``: the problem restricted by user rules, if rules were applied before the search.
-    ``contradicted``: whether user rules allow no tree. Then there are no units.
+    ``contradicted``: whether user rules allow no tree. If so, there are no units.
     ``full_program``: the program with all user rules, if rules were applied before the search.
-    ``unsettled``: whether clingo has to enforce some rules; ``tree`` and ``reduced`` ignore these.
-    ``redundant``: whether trees under these rules may need units that lead to no goal.
+    ``unsettled``: whether clingo has to enforce some rules. ``tree`` and ``reduced`` ignore these rules.
+    ``redundant``: whether trees under the rules may need units that lead to no goal.
     """
 
     problem: Problem
@@ -83,8 +83,8 @@ class Prepared:
         """The facts of the problem, as text, without the facts about objectives.
 
         If user rules were applied before the search, only facts that some rule reads are written. Bounds on
-        costs are included. The sets of units that rules require are included if clingo does not get the rules
-        themselves. Raises ``KeyboardInterrupt`` at a limit.
+        costs are included. If clingo does not get the user rules, the sets of units that they require are
+        included. Raises ``KeyboardInterrupt`` at a limit.
         """
         from foon_asp.encoding import fact_writer as writing  # noqa: PLC0415
 
@@ -127,7 +127,7 @@ class Prepared:
     def require_kept(self, units: Collection[int]) -> None:
         """Require that a tree keeps to the user rules that were applied before the search.
 
-        Nothing is checked if these rules are not local, or if clingo enforced some of them.
+        Nothing is checked if the user rules are not local, or if clingo enforced some of them.
         """
         rules = self.full_program.added if self.full_program else None
         if rules is not None and rules.local and not self.unsettled:
@@ -146,9 +146,8 @@ class Prepared:
     ) -> "Run":
         """Run clingo with additional facts and encodings; see :func:`foon_asp.encoding.clingo_run.run`.
 
-        ``predicates`` are those whose atoms the run has, in addition to the units. Returns an empty run if a
-        limit is reached while the facts are written. Errors in rewritten constraints have their places in the
-        files.
+        The run has the atoms of ``predicates`` in addition to the units. Returns an empty run if a limit is
+        reached while the facts are written. Errors in rewritten constraints have their places in the files.
         """
         from foon_asp.encoding.clingo_run import run  # noqa: PLC0415 (both take clingo along)
         from foon_asp.encoding.run import Run  # noqa: PLC0415
@@ -192,9 +191,9 @@ def prepare(
     only remove or require units are applied first, unless ``settings`` are without reductions. The costs by
     user measures are computed before that, and kept in ``problem``.
 
-    ``listener``: receives trees and bounds. Without one, no reductions by costs are made, so that all trees
-    remain. With one, they may exclude every tree except one of the best. If ``program`` has bounds on trees,
-    none are made either: perhaps only excluded trees meet the bounds.
+    ``listener``: receives trees and bounds. Without a listener, no reductions by costs are made, so that all
+    trees remain. With a listener, they may exclude every tree except one of the best. If ``program`` has
+    bounds on trees, no reductions by costs are made, since the remaining trees might not meet the bounds.
     ``for_sale``: ids of object nodes that may be added to the kitchen. With them, no rules are applied first.
     ``brief``: whether to skip the search for the best tree without the rules that clingo has to enforce.
     ``solved``: the solved goals of questions that differ only in their goals, by which reductions save work.
@@ -263,9 +262,9 @@ def prepare(
 def _apply_rules(prepared: Prepared, rules: "Rules | ReadyMade") -> Prepared:
     """Apply the user rules that remove units or require sets of units, and return the question.
 
-    If other rules remain, the question is ``unsettled``; if no tree can satisfy the rules, it is
-    ``contradicted``. It is returned unchanged if the rules cannot be applied: if they are not local, or
-    clingo refuses one. In a large network, all rules may be left to the search.
+    If clingo has to enforce other rules, the question is ``unsettled``. If no tree can satisfy the rules, the
+    question is ``contradicted``. The question is returned unchanged if clingo refuses a rule, or if rules
+    that clingo has to enforce are not local. In a large network, all rules may be left to the search.
     """
     if rules.unsettled and not rules.local:
         return prepared

@@ -19,7 +19,7 @@ class Program(NamedTuple):
 
     ``files``: the encodings and user rules.
     ``exact_success``: an encoding for exact comparison of products of rates, loaded after ``files``.
-    ``arguments``: clingo's arguments; those that set constants come first.
+    ``arguments``: clingo's arguments; arguments that set constants come first.
     ``constants``: the arguments that set constants.
     ``replaced``: whether some of the first three files differ from the built-in ones.
     ``is_built_in``: whether every rule is built in, so that units that the goals do not need cannot matter.
@@ -34,10 +34,10 @@ class Program(NamedTuple):
     rules may be broken or dropped.
     ``named``: the names of the constants that encodings and user rules define.
     ``reads``: the predicates that user rules read and that have facts only in some questions. Each is a pair
-    of its name and its first argument, which is empty if it is no name.
+    of its name and its first argument. If the first argument is no name, the pair has an empty text.
     ``ready_made``: the user rules, if all are ready-made constraints; else ``None``. If they are ready-made,
-    ``files`` are without them.
-    ``whole``: for ready-made constraints, the program with these rules, which clingo runs.
+    ``files`` does not have them.
+    ``whole``: if the user rules are ready-made, the program with them, for searches with clingo.
     """
 
     files: tuple[Loaded, ...]

@@ -29,10 +29,10 @@ class _Tree(NamedTuple):
 class Ranked:
     """The trees of a question, the best first, under a lexicographic list of objectives.
 
-    Trees that contain an earlier one are excluded. Iteration yields each tree as unit ids in an executable
-    order, with its costs. After iteration, ``complete`` is true if there are no other trees. After a limit or
-    ctrl-C it is false. Then ``pending`` has the trees that were found but not yielded, in order; better trees
-    may be missing. An iteration cannot be repeated.
+    Trees that contain an earlier tree are excluded. Iteration yields each tree as unit ids in an executable
+    order, with its costs. An iteration cannot be repeated. Afterwards, ``complete`` says whether all trees
+    were yielded; after a limit or ctrl-C, it is false. Then ``pending`` has the trees that were found but not
+    yielded, in order. Better trees than these may be missing.
 
     The constructor assembles the program and prepares the question. Raises :class:`UserError` like
     :func:`foon_asp.asp.solve`.
@@ -57,9 +57,9 @@ class Ranked:
     def __iter__(self) -> Iterator[tuple[tuple[int, ...], Costs]]:
         """Yield trees in order of their exact costs.
 
-        clingo finds trees in order of their rounded costs. A tree is yielded once no better tree can be found
-        later. With rounded costs, a tree found later can be better if its weight is higher by less than the
-        number of units whose weight is rounded down (docs/dev/exact-success.md).
+        clingo finds trees in order of their rounded costs. With rounded costs, a later tree can be better
+        than an earlier one (docs/dev/exact-success.md). So a tree is yielded once no better tree can be found
+        later.
         """
         if self.complete or self._prepared.stopped:
             return
@@ -148,7 +148,7 @@ class Ranked:
     def _is_settled(self, tree: _Tree, last: Rounded) -> bool:
         """Whether a tree is at least as good as every tree whose rounded costs are ``last`` or more.
 
-        If no costs are rounded, it always is.
+        Always true if no costs are rounded.
         """
         rounded_objective = self._prepared.scales.rounded
         if rounded_objective is None:

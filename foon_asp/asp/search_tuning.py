@@ -6,10 +6,11 @@ from typing import NamedTuple
 class SearchTuning(NamedTuple):
     """Sizes of the programs that clingo gets, and of the results that are stored.
 
-    ``nearest_units``: the number of units in the first reduced-cost neighbourhood. Landmarks of at most so
-    many units are explored at once.
+    ``nearest_units``: the number of units in the first reduced-cost neighbourhood. Landmarks of at most this
+    number of units are explored at once.
     ``nearest_growth``: the factor by which the neighbourhood grows if it has no tree.
-    ``explored_units``: the greatest number of explored units, without those that mattered before.
+    ``explored_units``: the greatest number of explored units. Units that a similar question explored do not
+    count.
     ``explored_growth``: the greatest factor by which the explored units grow in each round.
     ``open_rounds``: the greatest number of searches for trees with open preconditions; each explores more
     units.

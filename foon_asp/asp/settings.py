@@ -19,8 +19,8 @@ from foon_asp.rules.passed_constraint import Constraint
 class Relaxed(NamedTuple):
     """Constraints that are rewritten, so that a tree may break them or the search may drop them.
 
-    ``constraints``: the original constraints, which are checked like others, but not loaded.
-    ``rules``: their rewritten text.
+    ``constraints``: the original constraints. They are checked, but not loaded.
+    ``rules``: the text of the rewritten rules.
     ``encoding``: the built-in file of ``encodings/questions`` that is loaded with the rules.
     ``places``: the source of each rewritten rule, by its text.
     ``files``: the files that the places are in.
@@ -38,8 +38,8 @@ class Bounded(NamedTuple):
 
     ``rules``: the facts that the encodings read.
     ``files``: encodings of ``encodings/questions``.
-    ``below``: mappings from objectives to costs with fractions. A tree has to be below at least one cost of
-    each mapping. They are written as facts once their scale is known.
+    ``below``: mappings from objectives to costs with fractions. Of each mapping, a tree has to be below at
+    least one cost. The mappings are written as facts once the scale of the costs is known.
     ``incomparable``: known plans, as numbers of executions by unit id; no plan may contain one.
 
     The bounds are antimonotone: if a tree meets them, so does each subtree. Therefore, units that the goals
@@ -79,7 +79,7 @@ class Settings(NamedTuple):
 
     @property
     def replaced(self) -> Path | None:
-        """The folder of encodings that replace the built-in ones; ``None`` if these are unchanged.
+        """The folder of encodings that replace the built-in ones; ``None`` without one.
 
         If files of the built-in folder itself were changed, this is the built-in folder.
         """

@@ -28,10 +28,10 @@ class Broken(NamedTuple):
 class SoftOutcome(NamedTuple):
     """An answer under soft constraints.
 
-    ``penalty`` is the sum of ``weight`` times ``ways`` over all soft ``constraints``, for the tree of
-    ``outcome``. Without a tree, ``penalty`` is ``None`` and ``constraints`` is empty. The tree of an
-    ``optimal`` outcome has the least penalty, and is the best by the objectives among the trees with this
-    penalty.
+    Each of the ``constraints`` has a ``weight``, and ``ways``, the number of its instances that the tree of
+    ``outcome`` breaks. ``penalty`` is the sum of ``weight`` times ``ways``. Without a tree, ``penalty`` is
+    ``None`` and ``constraints`` is empty. The tree of an ``optimal`` outcome has the least penalty. It is the
+    best by the objectives among the trees with this penalty.
     """
 
     outcome: Outcome
@@ -70,12 +70,12 @@ def solve_soft(
     weights: Mapping[Constraint, int],
     reporter: Reporter | None = None,
 ) -> SoftOutcome:
-    """Find the tree with the least penalty, and among these the best by lexicographic objectives.
+    """Find the best tree by lexicographic objectives among the trees with the least penalty.
 
-    ``weights`` maps each soft constraint to its weight; the constraints of ``settings`` are hard. Each
-    instance of a rule that a tree breaks costs the weight of the rule. Two instances differ in the values of
-    global variables. At a limit, the tree found so far is returned, without a proof. Raises
-    :class:`UserError` like :func:`foon_asp.asp.solve`.
+    ``weights`` maps each soft constraint to its weight; the constraints of ``settings`` are hard. A tree may
+    break several instances of a rule, which differ in the values of its global variables. The penalty is the
+    sum of the weights of all broken instances. At a limit, the tree found so far is returned, without a
+    proof. Raises :class:`UserError` like :func:`foon_asp.asp.solve`.
     """
     settings = settings._replace(deadline=settings.effective_deadline)
     constraints, by_number, relaxed = soft_rules(settings, weights)

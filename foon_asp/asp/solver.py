@@ -48,7 +48,7 @@ def solve(
     """Return the best task tree under lexicographic objectives, with what is proved about it.
 
     ``units`` decides last, so that the tree is irredundant. At a limit or ctrl-C, the outcome has the
-    incumbent. If clingo's statistics are requested and clingo does not run, this is reported.
+    incumbent. If clingo's statistics are requested, but clingo does not run, the reporter is told so.
 
     ``mattered``: units, by id in the whole network, that the search for a similar question explored. They are
     explored first, and the units that this search explores are added.
@@ -155,8 +155,8 @@ class _Solver:
     def solve(self) -> Outcome:
         """Return the outcome of the search; at a limit or ctrl-C, the outcome with the incumbent.
 
-        If there is no incumbent at a limit, it is the tree of the prepared question, unless rules or bounds
-        may exclude this tree. The ground program is closed at the end.
+        If there is no incumbent at a limit, the outcome has the tree of the prepared question, unless rules
+        or bounds may exclude this tree. The ground program is closed at the end.
         """
         deadline = self.deadline
         try:
@@ -219,7 +219,7 @@ class _Solver:
 
         ``tree_without_rules`` is the best tree that was found without these rules. If it keeps to the rules,
         and ``reduced`` proves it best without them, it is optimal. If a similar question explored units, the
-        tree is taken to break the rules, and not checked.
+        tree is not checked, but taken to break the rules.
         """
         if self._mattered:  # the tree breaks rules, as in the similar question
             return self._solve_violated(subproblem, tree_without_rules)
@@ -272,9 +272,9 @@ class _Solver:
     def _solve_by_priced_limit(self, subproblem: Subproblem, tree_without_rules: Units) -> Outcome | None:
         """Find the best tree under a limit on a sum by putting a Lagrangian price on the sum.
 
-        Each sum of the rules whose limit ``tree_without_rules`` exceeds is tried in turn. Returns an outcome
-        without a tree if no tree is within a limit, or if the time is up. Returns ``None`` if no price yields
-        a tree that keeps to all rules.
+        Some rules limit a sum. Each sum whose limit ``tree_without_rules`` exceeds is tried in turn. Returns
+        an outcome without a tree if no tree is within a limit, or if the time is up. Returns ``None`` if no
+        price yields a tree that keeps to all rules.
         """
         from foon_asp.hypergraph.priced_limit import search_within_limit  # noqa: PLC0415 (of use with few rules)
 
@@ -342,17 +342,16 @@ class _Solver:
     ) -> "Run | None":
         """Search a relaxation in which preconditions of unexplored units may stay open.
 
-        An open precondition is one that no unit of the tree makes. Every tree that keeps to the rules has a
-        part that is feasible in the relaxation. So an infeasible relaxation proves that there is no tree, and
-        a best tree without open preconditions is optimal. A unit of each landmark is required as well, since
-        every tree has one. Until a tree without open preconditions is found, only units are minimized, which
-        is fast.
+        A precondition is open if no unit of the tree makes it. Every tree that keeps to the rules has a part
+        that is feasible in the relaxation. So an infeasible relaxation proves that there is no tree. A best
+        tree without open preconditions is optimal. A unit of each landmark is required as well, since every
+        tree has one. Until a tree without open preconditions is found, only units are minimized, which is
+        fast.
 
         The first round explores ``tree_without_rules``, small landmarks and the units that mattered before.
-        Each later round also explores the units of the best tree and their rivals, the other achievers of
-        what they make.
+        Each later round also explores the units of the last tree, and the other achievers of what they make.
 
-        Returns the run with a proof. Returns ``None`` if no run has one within the limits of
+        Returns the run with a proof. Returns ``None`` if no run has a proof within the limits of
         :class:`SearchTuning`. The explored units are added to ``_mattered``.
         """
         from foon_asp.encoding.fact_writer import write_known, write_objectives, write_required  # noqa: PLC0415
@@ -417,10 +416,10 @@ class _Solver:
     ) -> "Run | None":
         """Find the best tree of a relaxation with open preconditions by exact costs.
 
-        ``run`` found its best tree by rounded costs. ``program`` and ``text`` are the encodings and facts of
+        ``run`` found the best tree by rounded costs. ``program`` and ``text`` are the encodings and facts of
         the relaxation. Every tree has at least ``fewest`` units. Returns the run, with the tree that is best
-        by exact costs. Returns ``None`` if the tree is not proved best, or if it has units that are not
-        ``explored``: then it may have open preconditions.
+        by exact costs. Returns ``None`` if this tree is not proved best. Also returns ``None`` if it has
+        units that are not ``explored``, since it may then have open preconditions.
         """
         assert run.units is not None
         self._measures_agree(run.units, run.cost, self.levels)
@@ -475,17 +474,17 @@ class _Solver:
         return self._optimal_outcome(best) if proved else self._outcome_at_limit(best, run.lower)
 
     def _best_reported(self, units: Units) -> Units:
-        """Return the incumbent, or ``units`` with replaced encodings, which may define another order."""
+        """Return the incumbent; with replaced encodings, which may define another order, return ``units``."""
         assert self.listener.incumbent is not None
         return units if self.program.replaced else self.listener.incumbent[0]
 
     def _opt_mode(self, incumbent: Units) -> tuple[str, bool]:
         """Return clasp's ``--opt-mode``, such as ``opt,2,5``, and whether only better trees satisfy it.
 
-        The mode bounds costs by those of the incumbent. After reductions by costs, trees as good as the
-        incumbent need not be among the remaining units, so only better trees are searched. If costs are
-        rounded, they do not decide, so equal rounded costs are allowed. Without such reductions, the mode is
-        ``opt``. No bound is below 0, which some strategies of clasp do not support.
+        The mode bounds costs by those of the incumbent. Reductions by costs may remove trees that are as good
+        as the incumbent, so only better trees are searched. If costs are rounded, they do not decide, so
+        equal rounded costs are allowed. Without reductions by costs, the mode is ``opt``. No bound is below
+        0, which some strategies of clasp do not support.
         """
         prepared = self.prepared
         if (
@@ -534,10 +533,10 @@ class _Solver:
         The units of the run are given by id in the network of the problem. At a limit before the search, the
         run is empty.
 
-        ``products``: totals by the rounded objective, such as products of success rates, each as the vector
-        of :meth:`Scales.vector`. Trees with a total in ``products`` are excluded.
-        ``wanted``: the index, in ``products``, of a total that is required instead; ``None`` to exclude all
-        of them.
+        ``products``: totals by the rounded objective, such as products of success rates. Each total is a
+        vector of :meth:`Scales.vector`. Trees with one of the totals are excluded.
+        ``wanted``: if it is not ``None``, no total is excluded. Instead, trees must have the total at this
+        index of ``products``.
         ``fewer``: numbers of units by index of a total. Trees with this total are allowed if they have fewer
         units.
         ``opt_mode``: the ``--opt-mode`` of clasp.
@@ -575,9 +574,9 @@ class _Solver:
     ) -> "Grounded":
         """Return the ground program for the parameters of :meth:`_run`.
 
-        The last program is kept. It is returned again for the same parameters; of ``products``, only their
-        number is compared. For other parameters, it is closed. The times of writing facts and of grounding
-        are added to ``seconds``.
+        The last program is kept. It is returned again for equal parameters; of ``products``, only the number
+        of totals is compared. For other parameters, the last program is closed. The times of writing facts
+        and of grounding are added to ``seconds``.
         """
         question = objectives, len(products), wanted, fewer
         if self._ground:
@@ -638,8 +637,8 @@ class _Solver:
         """Find the best tree by exact costs where clingo compares rounded ones (docs/dev/exact-success.md).
 
         ``best`` is the best tree by rounded costs. Every total that rounding may have hidden is examined. No
-        tree has fewer units than ``fewest``. Returns the best tree found, and whether it is proved best; at a
-        limit, it is not. If no costs are rounded, ``best`` is returned as proved.
+        tree has fewer units than ``fewest``. Returns the best tree found, and whether it is proved best. At a
+        limit, there is no proof. If no costs are rounded, ``best`` is returned as proved.
         """
         scales = self._current_scales()
         if scales.rounded not in self.levels:  # a kept program has other levels, too
@@ -701,11 +700,11 @@ class _Solver:
         return chosen, True
 
     def _measures_agree(self, units: Units, cost: Sequence[int], objectives: Sequence[Objective]) -> bool:
-        """Return whether clingo's costs (modulo 2^32) are the weights of the units.
+        """Return whether clingo's costs of a tree are the weights of its units, modulo 2^32.
 
-        If they are not, a warning is reported if objectives.lp was replaced; otherwise this is a bug. In any
-        case the weights are required to fit the exact costs. ``cost`` may have all levels, with 0 for those
-        not optimized.
+        If they are not, and objectives.lp was replaced, a warning is reported. If objectives.lp was not
+        replaced, this is a bug. In any case, the weights have to fit the exact costs. ``cost`` may have all
+        levels, with 0 for levels that are not optimized.
         """
         scales, costs = self._current_scales(), self.listener.costs(units)
         weights = {objective: scales.weight(objective, units) for objective in objectives}
@@ -732,10 +731,10 @@ class _Solver:
         return agree
 
     def _require_measures(self, agree: bool) -> None:
-        """Raise :class:`UserError` if ``agree`` is false: clingo's costs of a tree are not our weights of it.
+        """Raise :class:`UserError` if ``agree`` is false: clingo's costs of a tree differ from our weights.
 
-        Called for a tree after one whose costs agreed. Disagreement means that a replaced objectives.lp
-        measures only some trees as usual, so that trees cannot be compared.
+        To be called for later trees, if the costs of an earlier tree agreed. A disagreement then means that a
+        replaced objectives.lp measures only some trees as usual, so that trees cannot be compared.
         """
         if not agree:
             raise UserError(
@@ -746,11 +745,13 @@ class _Solver:
     def _objective_bounds(self, lower: Sequence[int]) -> dict[Objective, int | Fraction]:
         """Return bounds on the objectives from clingo's lower bounds, which begin with the highest priority.
 
-        Without a bound of clingo, costs are at least 0 and success is at most 1. The bound of the cuts on the
-        first objective counts, too. A bound on a cost is at most the cost of the incumbent, since clingo may
-        search for better trees only. Objectives after a rounded one have no bound, since it is not known
-        which trees they count among. After reductions, only the first objective has a bound if it multiplies,
-        or if its bound is not the cost of the incumbent.
+        Without a bound of clingo, costs are at least 0 and success is at most 1. Objectives after a rounded
+        one have no bound.
+
+        After reductions, the bound by cuts on the first objective is used if it is better. A bound on a cost
+        is at most the cost of the incumbent, since clingo may search for better trees only. If the first
+        objective multiplies, or its bound differs from the cost of the incumbent, later objectives have no
+        bound.
         """
         bounds: dict[Objective, int | Fraction] = {}
         for objective, value in zip(self.levels, lower or [0], strict=False):
@@ -834,9 +835,9 @@ class _Solver:
 def _cut_objects(reduced: Reduced | None) -> list[frozenset[int]]:
     """Return the objects of each cut that a certificate can start from.
 
-    The list is empty without reductions. These are the cuts of the best bound, those found before any
-    reduction, and tight ones. Excluded actions may cross many cuts of the best bound. The cuts found before
-    any reduction count all actions. Tight cuts count the actions that remained when they were found.
+    There are three kinds of cuts: those of the best bound, those found before any reduction, and tight cuts.
+    Excluded actions may cross many cuts of the best bound. Cuts found before any reduction count all actions.
+    A tight cut counts the actions that remained when it was found. Without reductions, the list is empty.
     """
     if reduced is None:
         return []

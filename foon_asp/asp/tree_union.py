@@ -27,8 +27,8 @@ class TreeUnion(NamedTuple):
 
     ``best``: the outcome with the best tree.
     ``in_some``, ``in_every``: the units that some tree has, and that every tree has, as far as it is known.
-    ``undecided``: after a limit, the units that may still change this: units outside ``in_some`` that some
-    tree may have, and units in ``in_some`` that every tree may have.
+    ``undecided``: after a limit, the units that may still be added. Units in ``in_some`` may belong to
+    ``in_every``; other units may belong to ``in_some``.
     """
 
     best: Outcome
@@ -47,10 +47,10 @@ def tree_union(
     """Find the units of some and of every tree up to a cost, as brave and cautious consequences.
 
     If ``worse`` is 0, the trees are the optimal ones. Otherwise they are all irredundant trees whose first
-    objective is worse than the best value by at most this share of it: by 10% for ``Fraction(1, 10)``. Each
-    search finds a tree that adds a unit to the units of some tree, or removes one from the units of every
-    tree. The last search proves that there is no such tree. Without a proved optimum, nothing is searched:
-    the units of the tree that was found are in ``in_some``, and undecided.
+    objective is at most the share ``worse`` worse than the best value: for ``Fraction(1, 10)``, 10%. Each
+    search finds a tree with a unit that no earlier tree has, or without a unit that all earlier trees have.
+    The last search proves that there is no such tree. Without a proved optimum, nothing is searched. The
+    units of the tree that was found are then in ``in_some``, and undecided.
 
     Raises :class:`UserError` like :func:`foon_asp.asp.solve`, and for user rules if ``worse`` is not 0.
     """
@@ -102,8 +102,8 @@ class _UnionSearch:
     def _candidates(self) -> tuple[int, ...]:
         """Return the ids of the units that trees up to the cost limit can have.
 
-        Without reductions, under user rules that remain for clingo and at a limit, these are all units of the
-        prepared question.
+        These are all units of the prepared question in three cases: without reductions, under user rules that
+        clingo has to enforce, and at a limit.
         """
         prepared, deadline = self._prepared, self._prepared.deadline
         if not prepared.program.is_built_in or prepared.unsettled or not prepared.settings.reductions:
@@ -141,7 +141,7 @@ class _UnionSearch:
     def _opt_mode(self) -> str:
         """The ``--opt-mode`` of clasp: ``opt,2,6`` excludes trees that cost more than the best one.
 
-        It is ``opt``, without a bound, if worse trees count or costs are rounded.
+        If trees worse than the best one count, or costs are rounded, it is ``opt``, without a bound.
         """
         scales, levels = self._prepared.scales, self._prepared.levels
         if self._worse or scales.rounded is not None:
@@ -160,9 +160,9 @@ class _UnionSearch:
     def _add_next_tree(self, question: str) -> bool | None:
         """Find another tree that changes the result, and change the result by it.
 
-        ``question`` are facts that ask for such a tree. Trees that do not count are excluded from all later
-        searches, as are trees that change nothing. Returns ``True`` if one was found, ``False`` if there is
-        none, ``None`` at a limit.
+        ``question`` are facts that ask for such a tree. A tree found may be above the cost limit by exact
+        costs, or change nothing. Then it is excluded from all later searches, and the search goes on. Returns
+        ``True`` if a tree changed the result, ``False`` if no tree does, ``None`` at a limit.
         """
         problem, levels = self._prepared.problem, self._prepared.levels
         while True:
@@ -190,10 +190,10 @@ class _UnionSearch:
             return True
 
     def _is_above_limit(self, tree: Sequence[int]) -> bool:
-        """Whether a tree costs too much to count, by rounded costs.
+        """Whether a tree costs more than the cost limit by rounded costs.
 
-        If worse trees count, only the first objective is compared; otherwise all are, in order.
-        clingo finds trees in order of rounded costs, so the trees not found yet cost too much as well.
+        If worse trees count, only the first objective is compared; otherwise all are, in order. clingo finds
+        trees in order of rounded costs. So if a tree is above the limit, all trees found later are as well.
         """
         prepared, costs = self._prepared, self._prepared.problem.costs(tree)
         scales = prepared.scales

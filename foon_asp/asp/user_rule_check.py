@@ -18,10 +18,10 @@ from foon_asp.problem import Objective, Problem, levels, reach
 
 
 class UserRuleCheck:
-    """A check of which user rules an executable tree breaks, or a plan if items are used up.
+    """A check that finds the user rules that an executable tree breaks or, if items are used up, a plan.
 
     The constraints are read once, for any number of trees. ``local`` says that units outside a tree do not
-    decide whether it breaks a constraint.
+    matter for any constraint.
     """
 
     def __init__(self, settings: Settings, used_up: bool = False) -> None:

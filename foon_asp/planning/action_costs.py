@@ -14,11 +14,12 @@ _MAX_FACTOR = 10**6  # of costs that are rounded: more digits of a logarithm, bu
 
 
 class Scale(NamedTuple):
-    """The scale by which an objective became integers: each of its costs was multiplied by ``factor``.
+    """The scale by which the costs of an objective became integers.
 
-    ``rounded`` says whether the products had to be rounded, so that sums of costs are not exact. The costs of
-    an objective that multiplies are the negative logarithms of its factors. ``factor`` includes the weight
-    that makes an objective outweigh all less important ones (lexicographic order).
+    Each cost was multiplied by ``factor``. In a lexicographic list, the factor includes a weight by which the
+    objective outweighs all less important ones. ``rounded`` says that the products were rounded, so that sums
+    of costs are not exact. For an objective that multiplies, the costs are the negative logarithms of its
+    values.
     """
 
     objective: Objective
@@ -54,10 +55,11 @@ def action_costs(
 ) -> ActionCosts:
     """Return integer costs by which a cheapest plan is a best one by a lexicographic list of objectives.
 
-    A tree executes each of the ``units`` at most once, and takes at most ``items`` kitchen items. So an
+    A tree executes each of the ``units`` at most once, and takes at most ``items`` kitchen items. So each
     objective gets a weight above the greatest sum of all less important objectives. ``units`` and ``tree``
-    are unit ids; ``tree`` is feasible. Plans are assumed to cost at most ``repeats`` times as much as
-    ``tree`` and the most expensive unit together. Costs that planners cannot add up exactly are rounded.
+    are unit ids; ``tree`` is feasible. No plan is assumed to cost more than ``repeats`` times an upper bound.
+    This bound is the cost of ``tree`` plus that of the most expensive unit. Costs that planners cannot add up
+    exactly are rounded.
 
     Raises :class:`UserError` if even rounded costs are too large, and for a success rate of 0.
     """
@@ -86,10 +88,11 @@ def _integer_costs(
 ) -> tuple[dict[int, int], Fraction, bool]:
     """Return the integer costs of units by an objective, their scale's factor, and whether they are rounded.
 
-    The factor is the common denominator of the costs, so that they are exact, if ``tree`` and the most
-    expensive unit together then cost at most ``max_cost``. It is 1 for costs that are integers. Otherwise it
-    is the greatest integer, from 1 to 1,000,000, for which they cost at most ``max_cost``, and the costs are
-    rounded. For an objective that multiplies, see :func:`_logarithms`.
+    The upper bound is the cost of ``tree`` plus that of the most expensive unit. If all costs are integers,
+    the factor is 1. Otherwise it is their common denominator, if the upper bound times this factor is at most
+    ``max_cost``. If not, the costs are rounded. The factor is then the greatest integer, from 1 to 1,000,000,
+    that keeps the upper bound at most ``max_cost``; it is 1 if no integer does. For an objective that
+    multiplies, see :func:`_logarithms`.
     """
     if multiplies(objective):
         return _logarithms(problem, units)
@@ -105,7 +108,7 @@ def _integer_costs(
 def _logarithms(problem: Problem, units: Sequence[int]) -> tuple[dict[int, int], Fraction, bool]:
     """Return the negative logarithms of success rates as integers, their scale's factor, and ``True``.
 
-    The ``True`` says that they are rounded. Raises :class:`UserError` for a rate of 0.
+    ``True`` says that the integers are rounded. Raises :class:`UserError` for a rate of 0.
     """
     impossible = next((unit for unit in units if not problem.rate(unit)), None)
     if impossible is not None:

@@ -81,8 +81,8 @@ def behaviour_tree_text(name: str, branches: Sequence[Branch], is_used_up: bool)
         name: The name of the root, for people.
         branches: The trees to follow, the first one first. If a branch has failed as often as it may, the
             next one begins with the nodes that are then available.
-        is_used_up: Whether items are used up; then there is one branch. Its ``failures`` have no effect,
-            since each action is repeated until it succeeds.
+        is_used_up: Whether items are used up. If so, there is a single branch. Its ``failures`` have no
+            effect, since each action is repeated until it succeeds.
     """
     root = ElementTree.Element("root", BTCPP_format="4", main_tree_to_execute="Plan")
     tree = ElementTree.SubElement(root, "BehaviorTree", ID="Plan")

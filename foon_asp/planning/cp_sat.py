@@ -32,8 +32,8 @@ def serve() -> None:
 class _Model:
     """The constraint model of a task: a start variable for each step, an interval for each use of a tool.
 
-    ``incumbent`` is a feasible schedule, given as the start of each step in ticks. It is a hint for the
-    solver, and its makespan an upper bound.
+    ``incumbent`` is a feasible schedule, given as the start of each step in ticks. The solver gets it as a
+    hint, and its makespan as an upper bound.
     """
 
     def __init__(self, cp_model: Any, task: ScheduleTask, incumbent: Sequence[int]) -> None:
@@ -89,10 +89,10 @@ class _Model:
         return "proved" if status == library.OPTIMAL else str(solver.status_name(status))
 
     def _constrain_tools(self) -> None:
-        """Add the constraints that a use of a tool occupies one copy, and that its steps do not overlap.
+        """Add the constraints on tools and copies of items.
 
-        The copy is occupied from the start of the first step to the end of the last one. Steps that share a
-        copy of an item do not overlap either.
+        A use of a tool occupies one copy, from the start of its first step to the end of its last step. The
+        steps of a use do not overlap. Steps that share a copy of an item do not overlap either.
         """
         model = self._model
         in_use: dict[ToolName, list[Any]] = {}

@@ -45,7 +45,8 @@ class _Relaxation:
     def strips(self) -> StripsTask:
         """Return the compiled task, with its facts numbered in order.
 
-        Its facts are those of the goal and of preconditions. An action that adds no such fact is left out.
+        A fact is left out if it is neither in the goal nor in a precondition. An action is left out if it
+        adds no remaining fact.
         """
         task = self._task
         relevant = self._relevant_facts()
@@ -76,8 +77,8 @@ class _Relaxation:
     def _relevant_facts(self) -> set[int]:
         """Return the facts of the goal and of the conditions of operators and axioms.
 
-        Conditions of effects that add such facts are included. So are the other values of variables in
-        conditions of axioms, since an axiom may be negated.
+        If a variable occurs in the body of an axiom, all its values are included, since the axiom may be
+        negated. If an effect adds an included fact, the condition of the effect is included as well.
         """
         task = self._task
         bodies = [axiom.body for axiom in task.axioms]
@@ -97,7 +98,8 @@ class _Relaxation:
     def _deletes(self, needed: set[int]) -> bool:
         """Whether an operator may delete a fact of ``needed``, or a condition of an effect that adds one.
 
-        An effect may delete every other value that its variable can have when the effect takes place.
+        An effect sets a variable to a value. It deletes the value that the variable had before, if that is
+        another value.
         """
         needed = self._with_effect_conditions(needed)
         for operator in self._task.operators:
@@ -115,11 +117,11 @@ class _Relaxation:
     ) -> Iterator[StripsAction]:
         """Yield actions without conditional effects for an operator, one for each union of effect conditions.
 
-        The conditions of the union become preconditions, and the action adds all effects whose conditions are
-        in the union. Conditions that hold initially or are preconditions always hold, since nothing is
-        deleted. A conditional effect is left out if it adds no relevant fact, or one that always holds. The
-        cost is 1 if the task does not count costs. Raises :class:`UserError` for more than ``max_variants``
-        unions; their number may be exponential.
+        The conditions of the union become preconditions. The action adds all effects whose conditions are in
+        the union. Facts that hold initially, and preconditions of the operator, hold always, since nothing is
+        deleted. A conditional effect is left out if it adds no relevant fact, or only a fact that always
+        holds. If the task does not count costs, the cost is 1. Raises :class:`UserError` for more than
+        ``max_variants`` unions; their number may be exponential.
         """
         holding = self._start.union(operator.preconditions)
         always: dict[int, None] = {}
@@ -149,9 +151,10 @@ class _Relaxation:
     def _default_derivations(self, defaults: set[int]) -> Iterator[StripsAction]:
         """Yield actions that derive the default values of derived variables (Clark's completion).
 
-        A variable has its default value if each axiom that sets it has a condition that fails. If several
-        values make an axiom fail, a new fact of the task says that it fails. Default values that these
-        derivations need are derived as well. Raises :class:`UserError` if such a derivation is cyclic.
+        A variable has its default value if every axiom that sets the variable fails. An axiom fails if the
+        variable of a fact in its body has another value. If several values make an axiom fail, a new fact of
+        the task says that the axiom fails. Default values that these derivations need are derived as well.
+        Raises :class:`UserError` if such a derivation is cyclic.
         """
         graph: dict[int, set[int]] = {}
         pending = sorted(defaults)

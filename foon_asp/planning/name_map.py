@@ -169,8 +169,8 @@ def _staying(network: Network, name: str | ObjectNode, stays: bool) -> Staying:
 def read_name_map(file: Path) -> NameMap:
     """Return the name map in a file.
 
-    Raises :class:`UserError` for a file that cannot be read, is not JSON, or is no :class:`MapFile`. Where it
-    is not JSON, the error has line and column.
+    Raises :class:`UserError` for a file that cannot be read, is not JSON, or is no :class:`MapFile`. If it is
+    not JSON, the error has the line and column.
     """
     text = read_plain_text(file)
     check_json(text, str(file))

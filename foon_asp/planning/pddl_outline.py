@@ -113,9 +113,9 @@ class PddlOutline:
 
 
 def require_task(domain: PddlOutline, problem: PddlOutline) -> None:
-    """Raise :class:`InputError` if a problem is of another domain, or a type or cost is not declared.
+    """Raise :class:`InputError` for the first fault of a planning task.
 
-    Raise it for an action with two costs as well. Only the first fault is reported.
+    A fault is a problem of another domain, a type or cost that is not declared, or an action with two costs.
     """
     for token, word in zip(problem.tokens, problem.tokens[1:], strict=False):
         if token.text == ":domain" and word.text != domain.name:

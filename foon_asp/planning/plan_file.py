@@ -47,9 +47,9 @@ class PlanStep(NamedTuple):
 def read_plan_text(text: str, file: str, names: NameMap) -> Sequence[PlanStep]:
     """Return the steps of a plan that execute units, in order; steps that take a kitchen item are left out.
 
-    Upper case in names does not count. Blank lines, comments and headings before the first step are skipped.
-    Raises one :class:`InputError` for all lines that are no steps of a plan or have unknown names. Raises it
-    for a log without a plan as well.
+    Names are read without regard to case. Blank lines, comments and headings before the first step are
+    skipped. Raises an :class:`InputError` that lists every line that is no step of a plan or has an unknown
+    name. Also raises :class:`InputError` for a log without a plan.
     """
     steps: list[PlanStep] = []
     faults: list[Diagnostic] = []

@@ -43,8 +43,8 @@ class PlanningTask:
     ``start``: the initial state.
     ``goals``: the goals of the problem, without kitchen items that have a cost.
     ``costs``: the integer costs of actions.
-    ``merged``: where items are used up, whether all copies of a node are merged into one. Otherwise the
-    copies of consumable nodes are counted.
+    ``merged``: whether copies of consumable nodes are not counted, although items are used up. All copies of
+    a node are then merged into one.
     """
 
     problem: Problem
@@ -85,7 +85,7 @@ class PlanningTask:
 
     @property
     def wanted(self) -> dict[int, int]:
-        """The number of copies of each goal that are wanted, by id."""
+        """The number of copies wanted of each goal, by node id."""
         return {goal: self.problem.wanted(goal) for goal in self.goals}
 
 
@@ -103,12 +103,12 @@ def planning_task(
     """Return the planning task of a problem, over the units relevant to its goals or the ``whole`` network.
 
     Units that add nothing are left out. With ``merged``, copies are not counted: a node is available or not.
-    If kitchen items have a cost, the task has an action for each item that some unit needs, which takes the
-    item.
+    If kitchen items have a cost, the task has an action that takes the item, for each item that some unit
+    needs.
 
     Raises :class:`UserError` if the costs of an objective are not known, or if planners cannot add them up.
-    Where items are used up, also for several objectives, for an objective by which items of a stock have a
-    cost, and for ``merged`` if amounts count.
+    If items are used up, it is also raised in three cases: for several objectives; for an objective by which
+    kitchen items cost something, if the kitchen has a stock; and for ``merged``, if amounts count.
     """
     network, endless = problem.network, problem.endless
     problem.require_known_for(objectives)

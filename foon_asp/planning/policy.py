@@ -23,9 +23,9 @@ class PolicyLimits(NamedTuple):
     """Limits of the search for the best policy.
 
     ``states``: the greatest number of states of the dynamic program; the default takes some seconds.
-    Thirteen bundled goals need fewer than 3,000.
-    ``units``: the greatest number of units in the trees. The dynamic program recurses once for each, and
-    Python limits the recursion.
+    Thirteen bundled goals need fewer than 3,000 states.
+    ``units``: the greatest number of units in the trees. The dynamic program recurses once for each unit, and
+    Python limits the depth of recursion.
     ``policies``: the greatest number of policies that are compared; each is evaluated exactly.
     """
 
@@ -54,7 +54,7 @@ class Policy(NamedTuple):
     """Trees to follow one after the other, and the ``chance`` that the goals are made.
 
     ``bound`` is a chance that no policy over the units of the trees exceeds. ``is_exact`` says that some
-    policy, perhaps not this one, has exactly this chance.
+    policy, perhaps not this one, reaches ``bound``.
     """
 
     branches: tuple[PolicyBranch, ...]
@@ -70,9 +70,10 @@ class _TooManyStates(Exception):  # noqa: N818 (is caught here)
 def best_policy(problem: Problem, trees: Sequence[tuple[int, ...]], retries: int) -> Policy:
     """Return the policy with the greatest chance among policies that follow some trees one after another.
 
-    Among policies of equal chance, one with the fewest branches is returned. If there are more policies than
-    :attr:`PolicyLimits.policies`, only the first ones are compared, which have the fewest branches. If there
-    are more states or units than :class:`PolicyLimits` allows, ``bound`` is only an upper bound.
+    The chance of a policy is the probability that it makes the goals. Among policies of equal chance, one
+    with the fewest branches is returned. At most :attr:`PolicyLimits.policies` policies are compared, those
+    with few branches first. If there are more states or units than :class:`PolicyLimits` allows, ``bound`` is
+    only an upper bound.
 
     Parameters:
         problem: The problem, whose items last, with rates.
@@ -98,7 +99,7 @@ def best_policy(problem: Problem, trees: Sequence[tuple[int, ...]], retries: int
 def _candidates(trees: Sequence[tuple[int, ...]], failures: int) -> Iterator[tuple[PolicyBranch, ...]]:
     """Yield the policies whose branches have this number of failures in total.
 
-    Each follows some of the trees, in some order and each at most once. Every branch has at least one
+    Each policy follows some of the trees, in some order, and no tree twice. Every branch has at least one
     failure. Policies with few branches come first.
     """
     for number in range(1, min(len(trees), failures) + 1):
@@ -111,8 +112,8 @@ def _candidates(trees: Sequence[tuple[int, ...]], failures: int) -> Iterator[tup
 class _ExecutionModel:
     """The preconditions, add effects and rates of units, all without kitchen items.
 
-    The functions ``needs``, ``makes`` and ``rate`` return them by unit id, and cache them. An add effect that
-    is also an input is left out.
+    The functions ``needs``, ``makes`` and ``rate`` return them by unit id, and cache the results. An add
+    effect that is also an input is left out.
     """
 
     def __init__(self, problem: Problem) -> None:
@@ -183,7 +184,10 @@ def _chance(problem: Problem, branches: tuple[PolicyBranch, ...]) -> Fraction:
 
 
 class _Optimum:
-    """The greatest chance of all policies over some units, by dynamic programming over available nodes."""
+    """The greatest ``chance`` that a policy over some units makes the goals, by dynamic programming.
+
+    A state is the set of available nodes.
+    """
 
     def __init__(self, problem: Problem, units: Sequence[int], retries: int) -> None:
         """Compute the greatest chance; raises :class:`_TooManyStates` beyond the limits."""

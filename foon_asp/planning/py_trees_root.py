@@ -62,9 +62,11 @@ def py_trees_root(xml: str | PathLike[str], execute: Execute, is_available: IsAv
 
     Parameters:
         xml: A string is the text of the XML; a path is that of a file with the text.
-        execute: Is called with an :class:`Execution` to execute a unit; returns ``True`` if it succeeded,
-            ``False`` if it failed, ``None`` while it is going on: then the next tick calls it again.
-        is_available: Is called with the name of an object node; returns whether it is there.
+        execute: A function that is called with an :class:`Execution` to execute a unit. It returns ``True``
+            if the execution succeeded, ``False`` if it failed. While the execution goes on, it returns
+            ``None``, and the next tick calls it again.
+        is_available: A function that is called with the name of an object node, and returns whether the node
+            is there.
 
     Returns:
         The root, a ``py_trees.behaviour.Behaviour``.

@@ -129,9 +129,9 @@ def robot_steps(
 
 
 def _is_tool(problem: Problem, unit: FunctionalUnit, node: ObjectNode) -> bool:
-    """Whether an input that is no place is a tool, that is, a utensil.
+    """Whether an input is a tool; the input must be no place of the unit.
 
-    If the problem has no utensils, a tool is an input that is also an output.
+    A tool is a utensil. If the problem has no utensils, a tool is an input that is also an output.
     """
     return node.label in problem.utensils if problem.utensils else node in unit.outputs
 
@@ -154,8 +154,8 @@ def _changes(network: Network, unit: FunctionalUnit) -> Iterator[Change]:
     """Yield the objects of a unit with their nodes before and after it.
 
     An input is paired with the same node among the outputs, or else with an output of its label. An input
-    without such an output has no node after the unit. Outputs without a partner come last, and have no node
-    before it.
+    without such an output has no node after the unit. Outputs without an input come last, and have no node
+    before the unit.
     """
     pairs: list[tuple[ObjectNode | None, ObjectNode | None]] = []
     remaining = list(unit.outputs)

@@ -104,7 +104,10 @@ class _Reader:
         return SasTask(self._file, facts, self._variables, derived, start, goal, operators, axioms, costed)
 
     def _variable(self) -> list[str]:
-        """Read a variable, record it and whether it is derived, and return the names of its facts."""
+        """Read a variable, and return the names of its facts.
+
+        The range of its facts is recorded, and its number if it is derived.
+        """
         self._expect("begin_variable")
         variable = self._next_line()
         if self._number() != -1:
@@ -118,8 +121,8 @@ class _Reader:
     def _operator(self) -> SasOperator:
         """Read an operator, and return it.
 
-        If an effect requires a value of its variable before, this becomes a precondition of the operator.
-        Each precondition is listed once.
+        If an effect requires that its variable has some value before, this fact becomes a precondition. Each
+        precondition is listed once.
         """
         self._expect("begin_operator")
         name, source = self._next_line().rstrip(), Source(self._file, self._line)
@@ -176,7 +179,7 @@ class _Reader:
         return number
 
     def _expect(self, *keywords: str) -> None:
-        """Read one line for each of the keywords; raise :class:`InputError` where it is another."""
+        """Read one line for each of the keywords; raise :class:`InputError` if a line is not its keyword."""
         for keyword in keywords:
             line = self._next_line()
             if line.strip() != keyword:

@@ -16,7 +16,7 @@ class Use(NamedTuple):
     """The use of one copy of a tool by some steps of a plan, which do not overlap.
 
     ``steps`` are positions in the plan, from 0. The copy is occupied from the start of the first step to the
-    end of the last step, since each later step needs the tool in the state in which an earlier step left it.
+    end of the last step. For each later step needs the tool in the state in which an earlier step left it.
     """
 
     name: ToolName
@@ -47,7 +47,7 @@ class ScheduleTask(NamedTuple):
 
     @property
     def at_step(self) -> list[list[int]]:
-        """The uses that each step is part of, as positions in ``uses``, by step."""
+        """For each step, the positions in ``uses`` of the uses that have the step."""
         uses_of: list[list[int]] = [[] for _ in self.lengths]
         for use, (_, steps) in enumerate(self.uses):
             for step in steps:
@@ -97,20 +97,20 @@ def schedule_task(
 def _uses(problem: Problem, replay: Replay, resources: ScheduleResources) -> tuple[Use, ...]:
     """Return the uses of tools in a plan.
 
-    A step belongs to an earlier use of a tool if it takes a copy that was made during that use: of the tool
-    itself, or of something in it. Otherwise it begins a new use. If a step needs several copies of a tool,
-    it belongs to as many uses.
+    The steps of a use make copies of the tool, and of items in it. A later step that takes such a copy
+    belongs to the same use. Any other step that needs the tool begins a new use. If a step needs several
+    copies of a tool, it belongs to several uses.
     """
     names: list[ToolName] = []
     steps: list[list[int]] = []
     use_of: dict[tuple[Copy, str], int] = {}  # the use of a tool with this label that a made copy belongs to
 
     def assign(number: int, label: str, node: ObjectNode | None, copy: Copy | None) -> int:
-        """Assign a step to the use that ``copy`` belongs to, or to a new use; return the position of the use.
+        """Add a step to the use that ``copy`` belongs to, or to a new use; return the position of the use.
 
-        If the step belongs to the use of ``copy`` already, it begins a new use. ``label`` is the tool's
-        label, and ``node`` its node before the step, if that is known. The name of a new use is the label,
-        unless ``node`` is in the kitchen; then it is the name under which ``node`` is counted.
+        The use is new if ``copy`` belongs to no use, or to one that has the step already. ``label`` is the
+        label of the tool. ``node`` is the tool's node before the step, if that is known. The name of a new
+        use is ``label`` or, for a ``node`` in the kitchen, the name under which ``node`` is counted.
         """
         use = None if copy is None else use_of.get((copy, label))
         if use is None or number in steps[use]:

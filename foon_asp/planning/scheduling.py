@@ -23,11 +23,10 @@ class BestSchedule(NamedTuple):
 
     ``starts``: the starts of the steps in ticks; ``None`` without a schedule.
     ``bound``: a lower bound on the makespan, in ticks.
-    ``proved``: whether it is proved that no schedule is shorter or, without ``starts``, that no schedule
-    exists.
-    ``lacking``: without ``starts``, maps each tool of which there are too few copies to the number that a
-    schedule needs; else empty. In total, these are the fewest additional copies, unless a limit stopped the
-    search for them.
+    ``proved``: whether it is proved that no schedule is shorter. Without ``starts``, whether it is proved
+    that no schedule exists.
+    ``lacking``: maps each tool with too few copies to the number of copies that a schedule needs. Empty if
+    there is a schedule. The additional copies are the fewest in total, unless a limit stopped the search.
     """
 
     starts: tuple[int, ...] | None
@@ -40,9 +39,9 @@ def shortest_schedule(task: ScheduleTask, deadline: Deadline) -> BestSchedule:
     """Return the schedule of least makespan; at a limit or ctrl-C, the best one found so far.
 
     A limit and ctrl-C are recorded in the deadline. CP-SAT searches in another process. If there are too few
-    tools for a schedule, the result says which are lacking. At a limit before an order of the steps is known,
-    the steps follow one after the other as listed, if the tools allow it. Raises :class:`UserError` if
-    OR-Tools is not installed.
+    tools for a schedule, the result says which are lacking. The search may end before it finds an order that
+    the tools allow. Then the steps follow one after the other in the order of the plan, if the tools allow
+    this. Raises :class:`UserError` if OR-Tools is not installed.
     """
     if find_spec("ortools") is None:
         raise UserError(_NOT_INSTALLED)
@@ -91,10 +90,10 @@ def shortest_schedule(task: ScheduleTask, deadline: Deadline) -> BestSchedule:
 
 
 def _sequential_schedule(task: ScheduleTask) -> tuple[tuple[int, ...] | None, dict[ToolName, int]]:
-    """Return the starts of the steps as listed, one after the other, and an empty mapping.
+    """Return the starts of the steps if they are done one after the other as listed, and an empty mapping.
 
-    If a tool has too few copies for that, return ``None``, and map each such tool to the number of copies
-    needed.
+    If a tool has too few copies for that, return ``None`` and a mapping from each such tool to the number of
+    copies needed.
     """
     spans = [(use.name, min(use.steps), max(use.steps)) for use in task.uses]
     needed = {
@@ -117,8 +116,8 @@ def _makespan(task: ScheduleTask, starts: Sequence[int]) -> int:
 def timed_steps(task: ScheduleTask, starts: Sequence[int]) -> list[TimedStep]:
     """Return the steps of a schedule with their agents and tools, and with times in seconds.
 
-    Agents and tools are assigned so that the given starts, in ticks, are feasible. Then each step starts as
-    early as these assignments allow, perhaps earlier than given. A passive step has no agent.
+    ``starts`` are in ticks. Agents and tools are assigned so that these starts remain feasible. Then each
+    step starts as early as the assignments allow, perhaps earlier than given. A passive step has no agent.
     """
     ends = [start + length for start, length in zip(starts, task.lengths, strict=True)]
     active = [step for step, passive in enumerate(task.passive) if not passive]
@@ -172,11 +171,12 @@ def _followers(
     agents: dict[int, int],
     tools: dict[int, Tool],
 ) -> Iterator[tuple[int, int]]:
-    """Yield pairs of steps that share an agent, a tool or a copy: an earlier step and a later one.
+    """Yield pairs of an earlier and a later step: the earlier step has to end before the later one starts.
 
-    The earlier step has to end before the later one starts. Of the steps of an agent, of a use or of a copy
-    of an item, each is paired with the next one. If two uses of a tool follow each other directly, every step
-    of the first use is paired with every step of the second. ``spans`` are the start and end of each use.
+    The steps of a pair share an agent, a tool or a copy of an item. Steps that share an agent, a use or a
+    copy are sorted by start, and each is paired with the next one. If two uses of a tool follow each other
+    directly, every step of the first use is paired with every step of the second. ``spans`` are the start and
+    end of each use.
     """
     uses = task.uses
     steps_of_agent: dict[int, list[int]] = {}

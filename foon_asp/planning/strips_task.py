@@ -27,7 +27,7 @@ class StripsTask:
     """A STRIPS task without delete effects, the delete relaxation of a planning task.
 
     ``name``: the name of the task.
-    ``facts``: the names of the facts; facts are given by position in it.
+    ``facts``: the names of the facts. Everywhere else, a fact is its position in this list.
     ``start``, ``goals``: the facts of the initial state and of the goal.
     ``has_deletes``: whether actions of the original planning task delete relevant facts.
     """
@@ -61,9 +61,9 @@ class StripsTask:
     def problem(self) -> Problem:
         """Return the task as a problem: facts are object nodes, actions units, the initial state the kitchen.
 
-        Actions without add effects are left out. Equal actions of the same name become one unit. Facts that
-        neither an action, the initial state nor the goal has are left out. The problem has prices unless
-        all actions cost 1.
+        Actions without add effects are left out. Equal actions of the same name become one unit. Facts are
+        left out if they occur in no action, nor in the initial state or the goal. The problem has prices
+        unless all actions cost 1.
         """
         nodes = [ObjectNode(fact) for fact in self.facts]
         builder = NetworkBuilder()

@@ -21,7 +21,8 @@ def read_task(files: Sequence[Path], deadline: Deadline) -> StripsTask:
     ``files`` are a domain and a problem in PDDL, in any order, or one file of Fast Downward's translator. The
     domain may be left out if it is in the folder of the problem.
 
-    Raises :class:`UserError` for other files and for errors in them, :class:`LimitError` at the deadline.
+    Raises :class:`UserError` for other numbers or kinds of files, and for errors in a file. Raises
+    :class:`LimitError` at the deadline.
     """
     if not 1 <= len(files) <= 2:
         raise UserError(f"found {len(files)} files, expected {_EXPECTED}")
@@ -34,9 +35,10 @@ def read_task(files: Sequence[Path], deadline: Deadline) -> StripsTask:
 
 
 def read_pddl(domain: PddlOutline, problem: PddlOutline, deadline: Deadline) -> StripsTask:
-    """Return the delete relaxation of a planning task in PDDL; raises the errors of :func:`read_task`.
+    """Return the delete relaxation of a planning task in PDDL.
 
-    One more :class:`UserError` is that Fast Downward's translator is not installed.
+    Raises the errors of :func:`read_task`, and :class:`UserError` if Fast Downward's translator is not
+    installed.
     """
     require_translator(f"{problem.file}: reading PDDL")
     with deadline.watched("reading the task"):

@@ -20,12 +20,12 @@ _CLINGO_OPTIONS = ("--opt-strategy=usc,oll,4", "--opt-usc-shrink=min")
 
 
 class ToolOrder(NamedTuple):
-    """An order of the steps that the available tools allow, or what is lacking for one.
+    """An order of the steps that the available tools allow, or the tools that are lacking for one.
 
     ``steps``: the steps in order; ``None`` without an order.
     ``proved``: whether it is proved that there is no order.
-    ``lacking``: without an order, maps each tool of which there are too few copies to the number that an
-    order needs. In total, these are the fewest additional copies. Empty if they are not known.
+    ``lacking``: without an order, maps each tool with too few copies to the number of copies that an order
+    needs. The additional copies are the fewest in total. Empty if they are not known.
     """
 
     steps: tuple[int, ...] | None
@@ -36,8 +36,7 @@ class ToolOrder(NamedTuple):
 def tool_order(task: ScheduleTask, deadline: Deadline) -> ToolOrder:
     """Search for an order of the steps; if no order exists, search for the fewest lacking copies of tools.
 
-    Raises ``KeyboardInterrupt`` at ctrl-C. Also raises it at a limit, if it is not known yet whether an order
-    exists.
+    Raises ``KeyboardInterrupt`` at ctrl-C, and at a limit that is reached before the first search ends.
     """
     feasible = _run(task, deadline, may_lack=False)
     if feasible.units is not None:
@@ -76,7 +75,7 @@ def _run(task: ScheduleTask, deadline: Deadline, may_lack: bool) -> Run:
 def _steps_in_order(task: ScheduleTask, answer: Run) -> tuple[int, ...]:
     """Return the steps in a topological order that keeps to the order of uses in clingo's answer.
 
-    If several steps can come next, the one that is first in the plan does.
+    If several steps can come next, the first one in the plan is taken.
     """
     sorter = TopologicalSorter[tuple[str, int]]()
     for step, after in enumerate(task.after):
@@ -103,8 +102,8 @@ def _steps_in_order(task: ScheduleTask, answer: Run) -> tuple[int, ...]:
 def first_schedule(task: ScheduleTask, order: tuple[int, ...]) -> tuple[int, ...]:
     """Return the starts of steps, in ticks, by list scheduling.
 
-    The steps are placed in the given order, each as early as possible: when the steps that it waits for have
-    ended, and its tools are free. A step that is not passive also waits for an agent.
+    The steps are placed in the given order. Each starts as soon as the steps that it waits for have ended and
+    its tools are free. A step that is not passive also waits for an agent.
     """
     starts, ends = [0] * len(order), [0] * len(order)
     agent_free = [0] * task.agents

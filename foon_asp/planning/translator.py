@@ -39,8 +39,8 @@ def require_translator(purpose: str) -> None:
 def translate(domain: PddlOutline, problem: PddlOutline, deadline: Deadline) -> str:
     """Return the text of the file that the translator writes for a planning task in PDDL.
 
-    Raises :class:`UserError` if the translator is missing, refuses the task or fails; :class:`LimitError` at
-    the deadline.
+    Raises :class:`UserError` if the translator is missing, refuses the task or fails. Raises
+    :class:`LimitError` at the deadline.
     """
     require_translator(f"{problem.file}: reading PDDL")
     with tempfile.TemporaryDirectory(prefix="foon-asp-") as name:
@@ -57,8 +57,8 @@ def translate(domain: PddlOutline, problem: PddlOutline, deadline: Deadline) -> 
 def _run(folder: Path, deadline: Deadline) -> tuple[int, str]:
     """Run the translator in a folder until it ends; return its exit code and its output.
 
-    Its memory counts for the deadline. If a limit is reached, the process is killed and :class:`LimitError`
-    is raised. Messages for the error output are part of the output.
+    Error output is included. The memory of the translator counts for the deadline. If a limit is reached, the
+    process is killed and :class:`LimitError` is raised.
     """
     # Unbuffered, it notices at its next line that nobody reads it any more, should this process be killed.
     command = [sys.executable, "-P", "-u", "-m", _MODULE, *_TRANSLATOR_OPTIONS, "domain.pddl", "problem.pddl"]
@@ -90,7 +90,10 @@ def _run(folder: Path, deadline: Deadline) -> tuple[int, str]:
 
 
 def _failure(domain: PddlOutline, problem: PddlOutline, code: int, output: str) -> UserError:
-    """Return the error that the translator's exit code and output mean: in its input, or its own failure."""
+    """Return the error that the translator's exit code and output mean.
+
+    It is either an error in the planning task, or a failure of the translator itself.
+    """
     lines = [line.strip() for line in output.splitlines() if line.strip()]
     if code == _INPUT_ERROR:
         return UserError(_input_error(domain, problem, lines))

@@ -29,8 +29,8 @@ def unified_problem(
     """Return a problem of unified-planning: the task of :func:`planning_task`, with the names of its PDDL.
 
     The parameters are those of :func:`planning_task`. The problem minimizes the sum of the costs of actions.
-    Raises the errors of :func:`foon_asp.planning.planning_task.planning_task`, and :class:`UserError` if
-    unified-planning is not installed.
+    Raises the errors of :func:`planning_task`. Also raises :class:`UserError` if unified-planning is not
+    installed.
     """
     up = require_unified_planning()
     task = planning_task(problem, objectives, whole, merged)
@@ -84,7 +84,7 @@ def register_engine() -> str:
         The name of the engine there: ``foon-asp``.
 
     Raises:
-        UserError: if unified-planning is not installed, or Fast Downward's translator.
+        UserError: if unified-planning or Fast Downward's translator is not installed.
 
     Example:
         >>> try:

@@ -52,8 +52,8 @@ _KIND = (
 class FoonAspPlanner(Engine, OneshotPlannerMixin):  # type: ignore[misc]
     """A planner that finds the cheapest plan of a problem without deletes, and proves that none is cheaper.
 
-    Problems with deletes are solved only if the cheapest plan of their delete relaxation is also a plan of
-    theirs.
+    A problem with deletes is solved only if the cheapest plan of its delete relaxation is also a plan of the
+    problem.
     """
 
     def __init__(self, **_: object) -> None:
@@ -80,7 +80,7 @@ class FoonAspPlanner(Engine, OneshotPlannerMixin):  # type: ignore[misc]
 
     @staticmethod
     def satisfies(optimality_guarantee: Any) -> bool:
-        """Whether plans of the engine have an optimality guarantee: they have every one."""
+        """Whether the engine gives an optimality guarantee: true for every guarantee of unified-planning."""
         return optimality_guarantee in set(OptimalityGuarantee)
 
     @staticmethod
@@ -98,10 +98,10 @@ class FoonAspPlanner(Engine, OneshotPlannerMixin):  # type: ignore[misc]
     ) -> Any:
         """Return a cheapest plan of the delete relaxation, if it is a plan of the problem as well.
 
-        A result with a plan says whether it is proved optimal. Without a plan, the status of the result says
-        why: unsupported, unsolvable or stopped by ``timeout``, which is in seconds. If the cheapest plan of
-        the delete relaxation is no plan of the problem, the status is unsupported. The other parameters have
-        no effect.
+        A result with a plan says whether the plan is proved optimal. Otherwise the status of the result says
+        why there is no plan: unsupported, unsolvable or stopped by ``timeout`` (in seconds). If the cheapest
+        plan of the delete relaxation is no plan of the problem, the status is unsupported. ``heuristic`` and
+        ``output_stream`` have no effect.
         """
         if not self.supports(problem.kind):
             return self._result_without_plan(

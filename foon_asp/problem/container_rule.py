@@ -16,9 +16,9 @@ class ContainerRule(StrEnum):
 
     ``STRICT``: all inputs are preconditions, and all outputs are add effects. ``IMPLIED``, the rule of the
     published searches: some containers are skipped. A skipped container is a utensil with exactly one
-    ingredient. This ingredient is also an input of the unit, and is in, on or at the utensil. It is no
-    precondition. If the unit also lists it as an output, it is no add effect either, since nothing made it
-    before.
+    ingredient. This ingredient is also an input of the unit, and is in, on or at the utensil. The container
+    is then no precondition. If the unit also lists it as an output, it is no add effect either, since nothing
+    made it before.
 
     Example:
         >>> [str(rule) for rule in foon_asp.ContainerRule]
@@ -46,8 +46,8 @@ def container_rule(name: str) -> ContainerRule:
 def conditions(rule: ContainerRule, level: int, starting: bool = False) -> str:
     """Return the conditions under which a claim holds, in words: ``strict containers, level 2``.
 
-    The default level 3 is not mentioned. ``starting`` says that the user named no kitchen, so that the
-    starting kitchen is assumed; then ``, starting kitchen`` is added.
+    The default level 3 is not mentioned. If the user named no kitchen, ``starting`` is true, and ``, starting
+    kitchen`` is added.
     """
     text = f"{rule} containers" + (f", level {level}" if level < 3 else "")
     return text + (", starting kitchen" if starting else "")
@@ -58,10 +58,10 @@ def needed_inputs(
 ) -> tuple[ObjectNode, ...]:
     """Return the preconditions of a unit: the inputs that it needs under the rule, in the unit's order.
 
-    ``utensils`` are the labels of utensils. Without a ``network``, and at level 3, only the unit itself is
-    looked at. A unit of a network below level 3 stands for several level-3 units, whose nodes include their
-    contents. It needs an input if each of its level-3 units needs it. A unit that such a network lacks needs
-    all its inputs.
+    ``utensils`` are the labels of utensils. Without a ``network``, and at level 3, only the unit itself
+    decides. A unit of a network below level 3 stands for several level-3 units, whose nodes include their
+    contents. The unit needs an input if all its level-3 units need the input. A unit that such a network
+    lacks needs all its inputs.
     """
     return _preconditions_and_add_effects(unit, rule, utensils, network)[0]
 
@@ -71,10 +71,10 @@ def given_outputs(
 ) -> tuple[ObjectNode, ...]:
     """Return the add effects of a unit: the outputs that it makes under the rule, in the unit's order.
 
-    These are all outputs except inputs that the rule skips. Without a ``network``, and at level 3, only the
-    unit itself is looked at. A unit of a network below level 3 stands for several level-3 units. It makes an
-    output if at least one of its level-3 units makes it. A unit that such a network lacks makes all its
-    outputs.
+    An output is left out if it is also an input that the rule skips. Without a ``network``, and at level 3,
+    only the unit itself decides. A unit of a network below level 3 stands for several level-3 units. The unit
+    makes an output if at least one of its level-3 units makes the output. A unit that such a network lacks
+    makes all its outputs.
     """
     return _preconditions_and_add_effects(unit, rule, utensils, network)[1]
 
@@ -104,7 +104,7 @@ def _preconditions_and_add_effects(
 def _nodes_at_level(nodes: Iterable[ObjectNode], level: int) -> set[ObjectNode]:
     """Return nodes with only the parts that count at a level: at level 1, only their labels.
 
-    Nodes that differ only in other parts become one.
+    Nodes that differ only in parts that do not count become one node.
     """
     return {node_at_level(node, level) for node in nodes}
 
@@ -113,7 +113,7 @@ def _nodes_at_level(nodes: Iterable[ObjectNode], level: int) -> set[ObjectNode]:
 def network_sides(network: Network, rule: ContainerRule, utensils: frozenset[str]) -> tuple[Ids, Ids]:
     """Return two tuples indexed by unit id: the preconditions of each unit, and its add effects.
 
-    Both are ids of object nodes, in the order of the unit. The last four results are cached.
+    Both consist of ids of object nodes, in the order of the unit. The last four results are cached.
     """
     if rule is ContainerRule.STRICT:
         return network.inputs, network.outputs

@@ -69,7 +69,7 @@ class Costs:
     def measure(self, objective: Objective) -> int | Fraction:
         """Return the exact value by an objective.
 
-        A greater value of ``success`` is better; of the other objectives, a smaller value is.
+        A greater value of ``success`` is better. For any other objective, a smaller value is better.
         ``dissimilarity`` is 0 for a problem without stand-ins.
 
         Parameters:
@@ -90,7 +90,7 @@ class Costs:
     def key(self, objectives: Sequence[Objective]) -> tuple[int | Fraction, ...]:
         """Return a tuple of values for lexicographic comparison: a better tree has a smaller tuple.
 
-        Values of objectives of which more is better are negated.
+        If more is better by an objective, its value is negated.
 
         Parameters:
             objectives: The objectives, the most important first.
@@ -137,10 +137,7 @@ def tree_costs(
 
 
 def _product(figures: Collection[int | Fraction]) -> Fraction:
-    """Return the product of numbers as a fraction, which is reduced once, at the end.
-
-    To reduce each partial product would take most of the time.
-    """
+    """Return the product of numbers as a fraction, which is reduced only once, at the end, to save time."""
     numerator = math.prod(figure.numerator for figure in figures)
     return Fraction(numerator, math.prod(figure.denominator for figure in figures))
 

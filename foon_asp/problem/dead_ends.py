@@ -25,12 +25,12 @@ class Cause(StrEnum):
 class RootCause(NamedTuple):
     """An object node that causes dead ends: goals that cannot be made.
 
-    ``object``: its id. Of a cycle, it is the id of one of its nodes: if possible, of one on the cheapest path
-    to the goals.
-    ``stops``: the ids of the units that need the node, or a node of its cycle, on some path to an unreachable
-    goal.
-    ``on_the_way``: whether the cheapest path to the goals needs the node, or a node of its cycle. By h_add,
-    this path needs the fewest missing nodes.
+    ``object``: the id of the node. For the cause ``cycle``, it is one of the nodes of the cycle: if
+    possible, one on the cheapest path to the goals.
+    ``stops``: the ids of the units that need the node, or a node of its cycle, on some path to an
+    unreachable goal.
+    ``on_the_way``: whether the cheapest path to the goals needs the node, or a node of its cycle. The
+    cheapest path needs the fewest missing nodes, by the heuristic h_add.
     ``cycle``: the set of nodes that can only be made from each other; ``None`` for the cause ``missing``.
     """
 
@@ -52,8 +52,8 @@ class DeadEnds(NamedTuple):
     """The unreachable part of a network that concerns some goals; all nodes are given by id.
 
     ``goals``: the unreachable goals.
-    ``makers``: the achievers of each unreachable node on some path to these goals. The achiever that is the
-    cheapest by h_add comes first. A unit that also needs the node is no achiever.
+    ``makers``: the achievers of each unreachable node on some path to these goals. The cheapest achiever by
+    h_add comes first. A unit that also needs the node is no achiever.
     ``roots``: the causes. Causes on the cheapest path to the goals come first.
     ``available``: for each node of the network, 1 if it is reachable, else 0.
     """
@@ -67,8 +67,8 @@ class DeadEnds(NamedTuple):
 def dead_ends(problem: Problem) -> DeadEnds:
     """Return the goals that cannot be made from the kitchen, with the causes; user rules are ignored.
 
-    If all goals are reachable, ``goals``, ``makers`` and ``roots`` of the result are empty. The time is about
-    linear in the size of the network.
+    If all goals are reachable, ``goals``, ``makers`` and ``roots`` of the result are empty. The time is
+    nearly linear in the size of the network.
     """
     available = reach(problem).available
     goals = tuple(goal for goal in problem.goals if not available[goal])
@@ -119,7 +119,7 @@ def _unreachable_achievers(
 
 
 def _consumers(achievers: Mapping[int, Sequence[Blocked]]) -> dict[int, list[int]]:
-    """Return the ids of the blocked units that lack a node, by the id of the node."""
+    """Return, by node id, the ids of the blocked units that lack the node."""
     consumers: dict[int, list[int]] = {}
     for blocked in {unit.unit: unit for units in achievers.values() for unit in units}.values():
         for lack in blocked.lacks:
@@ -132,8 +132,8 @@ def _sort_achievers(
 ) -> tuple[Blocked, ...]:
     """Return the achievers of a node, sorted; the unit with the id ``cheapest`` comes first.
 
-    The others are in ascending order of the sum of the h-values of the nodes that they lack, then of id. If
-    ``cheapest`` is ``None``, all are in this order.
+    The others are sorted by the sum of the h-values of the nodes that they lack, then by id, both ascending.
+    If ``cheapest`` is ``None``, all are sorted in this way.
     """
 
     def key(blocked: Blocked) -> tuple[bool, int, int]:

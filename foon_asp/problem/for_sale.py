@@ -14,10 +14,10 @@ class Offer(StrEnum):
     """A set of object nodes that shopping lists may contain.
 
     With a price list, the set is ``priced``: the nodes on the price list. Without a price list, it is the
-    first set in this list from which the goals can be made:
+    first of the following sets from which the goals can be made:
 
     ``for sale``: the nodes that :class:`Shop` sells, except the dish.
-    ``cycle``: in addition, nodes that can only be made from each other.
+    ``cycle``: the nodes of ``for sale``, and nodes that can only be made from each other, except the dish.
     ``processed``: every node except the dish.
     ``dish``: every node except the goals.
     ``goal``: every node.
@@ -37,15 +37,15 @@ class Shop:
     In a FOON, states say that something was done to a node. So these nodes are for sale:
 
     - a node that no unit makes out of other nodes;
-    - a vessel or tool: its states are only empty or clean; or it is a node of the starting kitchen that has
-      no contents, and its label is no ingredient of any node;
+    - a vessel or tool: a node whose states are only empty or clean, or a node of the starting kitchen without
+      contents. The label of the latter must be no ingredient of any node;
     - an unprocessed node: it has no state, is not on or at anything, and contains at most one ingredient. The
       name of this ingredient (without one, the label of the node) must not be a *product*. A product is a
       name that some unit makes out of nodes without this name, such as whipped cream, dough or lemon juice.
 
-    The goals are not for sale, nor is the *dish*: any node that has the name of a goal as its label or as an
-    ingredient. The name of a goal is its label or, for a utensil, its one ingredient. Only names that are
-    products count.
+    The goals are not for sale, nor is the *dish*. The name of a goal is its label or, for a utensil, its one
+    ingredient. If this name is a product, each node with it as its label or as an ingredient belongs to the
+    dish.
     """
 
     def __init__(self, problem: Problem) -> None:
@@ -95,9 +95,9 @@ class Shop:
         """Return ascending ids of a few nodes that make all goals reachable once they are in the kitchen.
 
         The nodes come from the first offer from which the goals can be made. They are the nodes that the
-        relaxed plan of ``h_add`` buys; a node that units of this plan can make is left out. The plan buys few
-        nodes. With equally many nodes, it buys few second choices (:meth:`is_second_choice`). A shorter list
-        may exist. If all goals are reachable, the list is empty.
+        relaxed plan of ``h_add`` buys, without nodes that units of this plan can make. The plan buys few
+        nodes and, among equal numbers, few second choices (:meth:`is_second_choice`). A shorter list may
+        exist. If all goals are reachable, the list is empty.
         """
         for _, offer in self.offers(ends.roots):
             # an item costs more than all second choices of a list
@@ -135,13 +135,13 @@ class Shop:
     def is_second_choice(self, o: int) -> bool:
         """Whether a shopping list should avoid a node: it has several ingredients, or it can be made.
 
-        It can be made if some unit makes it out of other nodes. Vessels and tools with at most one ingredient
-        are no second choice, even if they can be made.
+        A node can be made if some unit makes it out of other nodes. Vessels and tools with at most one
+        ingredient are no second choice, even if they can be made.
         """
         return not self._is_raw_or_vessel(o) or len(self._problem.network.objects[o].ingredients) > 1
 
     def _is_raw_or_vessel(self, o: int) -> bool:
-        """Whether a node is raw, or a vessel or tool, by the first two rules of the class."""
+        """Whether a node is for sale by one of the first two rules of the class: raw, or a vessel or tool."""
         node = self._problem.network.objects[o]
         is_starting_vessel = o in self._starting and not node.contents and node.label not in self._ingredients
         return self.is_raw(o) or _is_clean_vessel(node) or is_starting_vessel

@@ -23,9 +23,8 @@ class Fate(StrEnum):
     ``OUTPUT``: stays, since the same node is also an output.
     ``TOOL``: stays, since it is a utensil with no ingredients.
     ``VESSEL``: stays, since it is a utensil that some output is in, on or at.
-    ``INSIDE``: stays, since it is an ingredient in, on or at an item, and this item is still there with the
-    ingredient. That is, an input and an output have the label of the item, and the output contains the
-    ingredient.
+    ``INSIDE``: stays, since it is inside an item that remains. It is an ingredient in, on or at the item. An
+    input and an output have the label of the item, and the output contains the ingredient.
     ``USED_UP``: is used up, since no reason applies.
     ``TOLD_STAYS``: stays, since a file of the user says so.
     ``TOLD_GOES``: is used up, since a file of the user says so.
@@ -60,8 +59,8 @@ def fate(
 
     ``inputs`` and ``outputs`` are all inputs and outputs of the unit, including any that a container rule
     skips. ``declared`` maps labels and nodes to whether the user declared that they stay. A declaration
-    overrides all other reasons, and one for a node overrides one for its label. If an output has the label of
-    the input but is another node, the unit changes the input. Then the input is used up.
+    overrides all other reasons. A declaration of a node overrides one of its label. If some outputs have the
+    label of the input, but none is the same node, the unit changes the input. Then the input is used up.
     """
     stays = declared.get(node, declared.get(node.label))
     if stays is not None:
@@ -95,8 +94,8 @@ class Flow(NamedTuple):
 class UnitFlows(Sequence[Flow]):
     """The flows of all units of a network; each is computed at the first access to it, and kept.
 
-    So a question about few units of a large network computes few flows. ``units`` is the number of units, and
-    the function ``flow`` computes the flow of a unit by id.
+    So for a question about a few units of a large network, only a few flows are computed. ``units`` is the
+    number of units. The function ``flow`` computes the flow of a unit by id.
     """
 
     def __init__(self, units: int, flow: Callable[[int], Flow]) -> None:
@@ -126,9 +125,9 @@ class UnitFlows(Sequence[Flow]):
 class UsedUp:
     """The model in which items are used up: declarations of the user, the stock, and wanted copies.
 
-    ``told`` maps labels and object nodes to whether they stay. This overrides the reasons of :class:`Fate`.
-    ``stock`` has the number of copies of kitchen nodes. Kitchen nodes that are not in it never run out.
-    ``wanted`` has the number of copies of each goal that is wanted more than once.
+    ``told`` maps labels and object nodes to whether they stay, which overrides the reasons of :class:`Fate`.
+    ``stock`` has the number of copies of kitchen nodes. A kitchen node without such a number never runs out.
+    If a goal is wanted more than once, ``wanted`` has the number of copies.
 
     Example:
         >>> foon_asp.UsedUp(stock={foon_asp.parse_node("egg"): 2}).told
@@ -164,10 +163,9 @@ class UsedUp:
     ) -> Flow:
         """Return the preconditions and effects of a unit on copies of items.
 
-        If a node is an input and an output, the unit makes only the copies that it puts out beyond those that
-        it takes. It uses up only those that it takes beyond the ones it puts out. An input that the user
-        declared as used up is used up in full. A node without an amount counts as one copy. Nodes of which no
-        copy is used up or made are left out of the effects.
+        If a node is both an input and an output, only the difference of the two amounts is used up or made.
+        An input that the user declared as used up is used up in full. A node without an amount counts as one
+        copy. Nodes of which no copy is used up or made are left out of the effects.
 
         Parameters:
             network: The network of the unit.
@@ -197,7 +195,7 @@ class UsedUp:
 def plain_flows(
     network: Network, rule: ContainerRule, utensils: frozenset[str], told: frozenset[tuple[Named, bool]]
 ) -> UnitFlows:
-    """Return the flows of the units of a network if each unit takes and makes one copy of a node.
+    """Return the flows of the units of a network if each unit takes and makes one copy of each node.
 
     ``told`` has what the user declared: pairs of a label or node, and whether it stays. The last four results
     are cached.

@@ -5,10 +5,10 @@ from typing import NamedTuple
 
 
 class LinearRow(NamedTuple):
-    """A linear constraint on a tree or plan: the weights of its executions sum up to at most ``bound``.
+    """A linear constraint on a tree or plan: the sum of the weights of its executions is at most ``bound``.
 
-    With ``at_least``, the weights sum up to at least ``bound``. ``weights`` maps unit ids to weights; other
-    units have weight 0. Each execution of a unit counts. With ``used``, only the first execution of each unit
+    With ``at_least``, the sum has to be at least ``bound``. ``weights`` maps unit ids to weights; other units
+    have weight 0. Each execution of a unit counts. With ``used``, only the first execution of each unit
     counts.
     """
 

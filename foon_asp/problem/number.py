@@ -19,8 +19,8 @@ _EXPONENT = re.compile(r"e([+-]?[\d_]+)\s*", re.IGNORECASE)
 def exact_number(number: Number, quantity: str) -> Fraction:
     """Return a number as an exact fraction: ``Fraction(9, 10)`` for ``0.9`` and for ``"0.9"``.
 
-    Raises :class:`UserError` for a value that is no finite number, and for an exponent beyond 1,000. Its
-    message names the ``quantity``, such as ``the duration of 'stir'``.
+    Raises :class:`UserError` for a value that is no finite number, and for an exponent beyond 1,000. The
+    message of the error names the ``quantity``, such as ``the duration of 'stir'``.
     """
     try:
         power = _EXPONENT.search(str(number)) if isinstance(number, str | Decimal) else None
@@ -51,8 +51,8 @@ def unit_price(number: Number, quantity: str) -> Fraction:
 def success_rate(number: Number, quantity: str) -> Fraction:
     """Return a success rate as an exact fraction, above 0 and at most 1.
 
-    Raises :class:`UserError` for a value that is no finite number, and for a rate outside this range. Its
-    message names the ``quantity``.
+    Raises :class:`UserError` for a value that is no finite number, and for a rate outside this range. The
+    message of the error names the ``quantity``.
     """
     rate = exact_number(number, quantity)
     if not 0 < rate <= 1:

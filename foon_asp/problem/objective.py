@@ -140,7 +140,7 @@ class Objective(str, metaclass=_IterableOverBuiltIns):
     @staticmethod
     @cache
     def of_measure(name: str) -> "Objective":
-        """Return the objective of a user measure: the least sum of the costs that it assigns to units.
+        """Return the objective of a user measure: least sum of the costs that the measure assigns to units.
 
         Each call with the same name returns the same object.
 
@@ -241,7 +241,7 @@ for _objective in _BUILT_IN.values():
 def multiplies(objective: Objective) -> bool:
     """Whether an objective is a product, of which more is better.
 
-    Others are sums, of which less is better.
+    Any other objective is a sum, of which less is better.
     """
     return objective.row.multiplies
 

@@ -9,8 +9,8 @@ def executable_order(problem: Problem, units: Iterable[int]) -> tuple[int, ...] 
     """Return unit ids in an order in which each unit can be executed; ``None`` if there is no such order.
 
     Each unit is listed once. Units that the goals do not need come last. The units need not make the goals.
-    The units that make the inputs of a step come directly before the step (depth-first from the goals), as in
-    a recipe. The time is linear in the number of units and their inputs and outputs.
+    As in a recipe, the units that make the inputs of a step come directly before the step (depth-first from
+    the goals). The time is linear in the number of units and their inputs and outputs.
     """
     needs, gives, kitchen = problem.needs, problem.gives, problem.kitchen
     chosen = sorted(set(units))

@@ -45,7 +45,7 @@ UnitPricesNamed = Mapping[str | FunctionalUnit, Number]
 
 
 class Unpriced(NamedTuple):
-    """The units of one motion that have no price: their number, and the source of the first."""
+    """The units of one motion that have no price: their number, and the source of the first unit."""
 
     motion: str
     units: int
@@ -228,8 +228,8 @@ class Problem:
     def about(self, units: Iterable[FunctionalUnit]) -> "Problem":
         """Return this problem over a network that also has the given units.
 
-        If the network is part of a store, the units are read from the store; units that it lacks are left
-        out. Otherwise this problem itself is returned.
+        If the network is part of a store, the units are read from the store. Units that the store lacks are
+        left out. If the network is no part of a store, this problem itself is returned.
 
         Parameters:
             units: The units.
@@ -317,8 +317,8 @@ class Problem:
     def flows(self) -> Sequence[Flow]:
         """The preconditions and effects of each unit on copies, by unit id.
 
-        If items are used up, they are computed at the first access to the unit. If items last, no unit uses
-        up any copies, and all numbers of copies are 1.
+        If items are used up, the flow of a unit is computed at the first access to it. If items last, no unit
+        uses up any copies, and all numbers of copies are 1.
         """
         items, network = self.items, self.network
         if items is None:
@@ -332,7 +332,7 @@ class Problem:
         motions_with_amounts = {unit.motion for unit in self.amounts}
 
         def flow(unit: int) -> Flow:
-            """Return the flow of a unit with its stated amounts; without such amounts, that in ``plain``."""
+            """Return the flow of a unit: by its stated amounts, or else from ``plain``."""
             has_amounts = network.motions[unit] in motions_with_amounts
             amounts = self.amounts.get(network.unit(unit)) if has_amounts else None
             if amounts is None:
@@ -388,8 +388,9 @@ class Problem:
     def copies_taken(self, plan: Iterable[int]) -> dict[int, int]:
         """Return the fewest copies of each consumable kitchen item with which a plan can be executed.
 
-        The numbers are by object node id; the mapping is empty if items last. An item that the plan does not
-        need has 0. If the item is a goal, the copies that are wanted in the end count as well.
+        The numbers are by object node id; the mapping is empty if items last. The number is 0 for an item
+        that the plan does not need. If an item is a goal, the copies that are wanted in the end count as
+        well.
 
         Parameters:
             plan: The ids of the units, in the order of execution.
@@ -414,7 +415,7 @@ class Problem:
     def targets(self) -> tuple[int, ...]:
         """The ids of what a tree has to make: the goals, and an additional node for each required set.
 
-        The additional nodes have the ids after those of the network's object nodes.
+        The ids of the additional nodes follow those of the network's object nodes.
         """
         size, restriction = len(self.network.objects), self.restriction
         return (*self.goals, *range(size, size + (len(restriction.required) if restriction else 0)))
@@ -450,7 +451,7 @@ class Problem:
             objectives: The objectives.
 
         Raises:
-            UserError: if the rates, the prices of some units, or the rules of a measure are missing; also if
+            UserError: if the rates, the prices of some units, or the rules of a measure are missing. Also if
                 a rate is 0 and an objective divides by it.
         """
         for objective in objectives:
@@ -563,7 +564,10 @@ class Problem:
 
     @cached_property
     def _known_costs(self) -> dict[str, Sequence[int | Fraction]]:
-        """The costs of the units, by name of measure; :meth:`apply_measures` fills them in."""
+        """The costs of the units by each measure that was computed, by name of measure.
+
+        :meth:`apply_measures` fills the mapping.
+        """
         return {}  # by measure
 
     def _costs_by(self, name: str) -> Sequence[int | Fraction]:
@@ -625,11 +629,11 @@ class Problem:
     def costs(self, units: Iterable[int]) -> Costs:
         """Return the costs of a tree or, where items are used up, of a plan.
 
-        Each unit of a tree counts once. Each execution of a plan counts, and so does each copy of a
+        For a tree, each unit counts once. For a plan, each execution counts, as does each copy of a
         consumable kitchen item that the plan requires. Objectives for which data are missing have no value.
 
         Parameters:
-            units: The ids of the units; of a plan in the order of execution, with repeats.
+            units: The ids of the units; for a plan in the order of execution, with repeats.
         """
         plan = list(units)
         counts = dict.fromkeys(sorted(plan), 1) if self.items is None else Counter(plan)
@@ -726,7 +730,7 @@ def for_each_goal(problem: Problem) -> list[Problem]:
 
 
 def count_unpriced(units: Iterable[tuple[str, Sequence[Source]]]) -> list[Unpriced]:
-    """Return the number of units without a price for each motion, with the source of the first of them.
+    """Return the number of units without a price for each motion, with the source of the first such unit.
 
     ``units`` has the motion and the sources of each unit without a price. For a unit without sources, the
     file of the source is ``-``.

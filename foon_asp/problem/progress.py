@@ -13,8 +13,9 @@ class Progress(NamedTuple):
 
     ``costs``: the costs of the incumbent; ``None`` before the first tree.
     ``bounds``: the proved bound by each objective that has one.
-    ``done``, ``total``: how much is done, out of how much. They count answers for a question with several
-    answers, bytes while a network is read, and units while it is built. ``total`` is 0 if nothing is counted.
+    ``done``, ``total``: how much is done, out of how much. For a question with several answers, they count
+    answers. While a network is read, they count bytes; while it is built, units. ``total`` is 0 if nothing is
+    counted.
 
     Example:
         >>> reports = []

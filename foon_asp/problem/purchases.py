@@ -37,8 +37,9 @@ class Purchases:
 
     A *ware* is an object node that can be bought. Its unit has no inputs, and makes a copy of the ware. The
     best tree or plan of ``problem`` by ``objectives`` has the cheapest purchases. Ties are broken by fewer
-    purchases, then by fewer purchases of wares to avoid, then by the objectives of the question. In these
-    objectives, a purchase is a unit that always succeeds, and costs nothing by price and by user measures.
+    purchases, then by fewer purchases of wares to avoid, then by the objectives of the question. For the
+    objectives of the question, a purchase is a unit that always succeeds. It costs nothing by price and by
+    user measures.
     """
 
     def __init__(
@@ -85,8 +86,8 @@ class Purchases:
     def without(self, wares: Collection[int]) -> Self:
         """Return a copy in which some wares, given by object node id, cannot be bought.
 
-        If none of them is a ware of the question, the question itself is returned. The problem of the copy
-        has a restriction that removes the purchases of ``wares``. It replaces any other restriction.
+        The problem of the copy has a restriction that removes the purchases of ``wares``, in place of any
+        other restriction. If no id is that of a ware, the question itself is returned.
         """
         removed = {unit for unit in self._purchases if self._wares[unit - self._first_purchase] in wares}
         if not removed:
@@ -96,7 +97,7 @@ class Purchases:
         return fewer
 
     def split(self, units: Sequence[int]) -> tuple[dict[int, int], tuple[int, ...]]:
-        """Return the purchases in a tree or plan, and its other units in their order.
+        """Return the purchases in a tree or plan, and the other units in their order.
 
         The purchases map the ids of the object nodes bought, ascending, to numbers of copies.
         """
@@ -107,9 +108,10 @@ class Purchases:
 
 
 def _add_purchases(network: Network, wares: Sequence[int]) -> Network:
-    """Return a network with an additional last unit for each ware; the unit makes the ware out of nothing.
+    """Return a network with an additional unit for each ware, which makes the ware out of nothing.
 
-    The public numbers of the new units follow the last public number. The result has no level-3 network.
+    The new units come last, and their public numbers follow the last public number. The result has no level-3
+    network.
     """
     count, numbers = len(wares), network.unit_numbers
     if numbers:

@@ -16,9 +16,9 @@ class Reached(NamedTuple):
 
     ``units``: the ids of all reachable units in an executable order, without units that a restriction
     removes.
-    ``makers``: maps the id of each object to the first unit in this order that makes it. So these achievers
-    have no cycle. Kitchen items are left out. Required sets of a restriction are included, under their ids in
-    :attr:`Problem.targets`.
+    ``makers``: maps the id of each object to the first unit in this order that makes the object. So these
+    achievers have no cycle. Kitchen items are left out. Required sets of a restriction are included, under
+    their ids in :attr:`Problem.targets`.
     ``available``: for each object of the network, 1 if it is reachable, else 0.
     """
 
@@ -160,7 +160,7 @@ def units_relevant_to_plans(problem: Problem, reached: Reached) -> set[int]:
 def kitchen_needed(problem: Problem) -> list[int]:
     """Return the ascending ids of kitchen items that a tree for the goals can need, or that are goals.
 
-    Units that cannot be executed count as well.
+    Units that cannot be executed are not left out of this search.
     """
     units, _ = search_backward(problem.goals, problem.makers, problem.needs, problem.kitchen)
     needed = {o for unit in units for o in problem.needs[unit]}.union(problem.goals)
@@ -183,9 +183,9 @@ def follow_achievers(
     needs: Sequence[Iterable[int]],
     start: Container[int],
 ) -> set[int] | None:
-    """Return the units that make objects out of ``start``; ``maker`` has one achiever for each object.
+    """Return a set of units that make objects out of ``start``; ``None`` if a needed object has no achiever.
 
-    The units are in no order. Return ``None`` if an object that is needed has no achiever.
+    ``maker`` has one achiever for each object.
     """
     units: set[int] = set()
     stack = list(objects)

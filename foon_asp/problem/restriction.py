@@ -11,9 +11,9 @@ class Restriction:
     """The units that rules exclude, and the sets of units that rules require (disjunctive action landmarks).
 
     ``removed`` is a function that takes the id of a unit and returns ``True`` if no tree may contain the
-    unit. It is called at most once for each unit, since its results are cached.
-    ``required``: sets of units. A tree has to contain and execute a unit of each set; the unit need not lead
-    to a goal. So a required set is like an additional goal whose achievers are its units.
+    unit. It is called at most once for each unit, since its results are cached. ``required`` are sets of
+    units. From each set, a tree has to contain and execute a unit, even if this unit leads to no goal. So a
+    required set is like an additional goal whose achievers are the units of the set.
     """
 
     removed: Callable[[int], bool]
@@ -31,7 +31,7 @@ class Restriction:
 
 
 class Contradiction(NamedTuple):
-    """The result that no tree satisfies the rules, which is known before any search."""
+    """The result that no tree satisfies the rules, known before any search."""
 
 
 class FilteredSets(Sequence[tuple[int, ...]]):

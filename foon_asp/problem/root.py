@@ -25,12 +25,11 @@ class Root:
     def simplify(cls, degree: int, of: Fraction) -> "Root":
         """Return a root with the least possible degree: ``Root(2, 3)`` for degree 4 and number 9.
 
-        If a number is a root of rational numbers for two degrees, it is also one for their greatest common
-        divisor. So dividing the degree by each divisor, while the number under the root stays rational, ends
-        with the least degree. Raises ``ValueError`` for a degree or number that is not positive.
+        Raises ``ValueError`` for a degree or number that is not positive.
         """
         if degree < 1 or of <= 0:
             raise ValueError("expected a positive degree, and a positive number under the root")
+        # if two powers of the root are rational, so is that by the greatest common divisor of the exponents
         for divisor in range(2, degree + 1):
             while degree % divisor == 0:
                 numerator, denominator = (

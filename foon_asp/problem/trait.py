@@ -30,8 +30,8 @@ class Trait(NamedTuple):
 class RequiredUnit(NamedTuple):
     """The description of a unit that rules require, in disjunctive normal form.
 
-    The unit has all traits of at least one of ``rows``. ``always`` says that the rules require such a unit in
-    every network; otherwise only in some networks.
+    The unit has all traits of at least one of ``rows``. ``always`` says whether the rules require such a unit
+    in every network, or only in some networks.
     """
 
     rows: Sequence[Sequence[Trait]]
