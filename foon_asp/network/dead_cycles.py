@@ -108,11 +108,11 @@ def _dead_nodes(network: Network, made: list[tuple[int, ...]], component: dict[i
 def _shortest_cycle(
     network: Network, made: list[tuple[int, ...]], nodes: frozenset[int], producers: list[int]
 ) -> DeadCycle:
-    """Return the dead cycle of strongly connected ``nodes``, with a shortest cycle through one as its steps.
+    """Return the dead cycle of ``nodes``, which are strongly connected; its steps are a shortest cycle.
 
-    ``producers`` are the units that make a node of the set, in rising order. The cycle is found by
-    breadth-first search from the first input of the first producer that is in the set. ``made`` has for each
-    unit the nodes that it makes and does not need.
+    ``producers`` are the units that make a node of the set, in rising order. Of all cycles through one node,
+    the shortest is found by breadth-first search. This node is in the set, and it is the first such input of
+    the first producer. ``made`` has for each unit the nodes that it makes and does not need.
     """
     consumers: dict[int, list[int]] = {}
     for unit in producers:

@@ -166,7 +166,8 @@ class StandInTable(NamedTuple):
         """Yield the edits between the contents of two nodes, each as :meth:`_node_edits` yields it.
 
         Contents with equal ingredients are one edit of the word. Otherwise each different ingredient is an
-        edit. If at most half of the ingredients are common, ``CONTENTS`` is an edit before these.
+        edit. If at most half of the ingredients are common, an edit ``CONTENTS`` comes before the edits of
+        the ingredients.
         """
         if serving.contents == served.contents:
             return

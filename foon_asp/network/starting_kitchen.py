@@ -24,8 +24,9 @@ def is_starting(kitchen: object) -> bool:
 class RecipeKitchen(NamedTuple):
     """The starting kitchen of one file, as ids of object nodes.
 
-    No unit of the file makes a ``raw`` node, except units that need the node themselves. A unit of the file
-    makes each ``granted`` node, but these are assumed to be available so that all units can execute.
+    A ``raw`` node is one that no unit of the file makes, except units that need the node themselves. A
+    ``granted`` node is one that a unit makes, but that is assumed to be available so that all units can
+    execute.
     """
 
     raw: list[int]
@@ -41,7 +42,7 @@ def recipe_kitchen(
     nodes, as ``goals`` are. Inputs are not used up.
 
     Raw nodes are available. Then units execute as far as they can. When none can, the first unit in the file
-    that lacks inputs is granted these, except ``goals``. This repeats until only goals are lacking. Then
+    that lacks inputs is granted what it lacks, except ``goals``. This repeats until only goals are lacking. Then
     goals are granted in the same way, for example if two goals need each other.
     """
     unit_sides = list(units)

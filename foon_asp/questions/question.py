@@ -100,8 +100,8 @@ class Question:
     ``formats``: the formats of the result, the default first.
     ``suffixes``: the format that each ending of a file name stands for; empty if no file can be written.
     ``pose``: a function from the options of the problem to the first arguments of the question.
-    ``command``: the function that a command calls with all options. It is not the question itself if a
-    command has more options, or answers where Python raises an exception.
+    ``command``: the function that a command calls with all options. This is usually the question itself.
+    It is another function if the command has more options, or answers where Python raises an exception.
     """
 
     def __init__(
@@ -163,7 +163,7 @@ def question(
 
 
 def python_question(ask: Callable[P, T], options: Sequence[Option] | None = None) -> Callable[P, T]:
-    """Return a function that also takes a path or data for a problem, with a complete docstring.
+    """Return a function that takes a problem, or a path or data in place of it; its docstring is completed.
 
     ``options`` describe the parameters in the docstring; by default, these are the options in the
     annotations. A command line needs :func:`question` instead.

@@ -217,12 +217,11 @@ def repair(
 def _certify_repair(
     needed: Repair, outcome: Outcome, settings: Settings
 ) -> tuple[Outcome, Certificate | None]:
-    """Return the outcome of a repair, and a certificate that no tree with all steps of the repair is better.
+    """Return the outcome of a repair, and a certificate that proves it the cheapest or that none exists.
 
-    If the certificate covers all objectives, it is the proof of the outcome. The certificate is ``None`` if
-    the repair is not proved, or if none is found in time. Raises :class:`BugError` if a better tree exists.
-    If no repair exists, the certificate proves this. A certificate of a bound alone leaves the outcome as it
-    is.
+    The certificate is ``None`` if nothing is proved, or if it is not found in time. If it covers all
+    objectives, it becomes the proof of the outcome. If it proves only a bound, the outcome is unchanged.
+    Raises :class:`BugError` if a better tree exists.
     """
     covered = Coverage(({"rule": ALL_STEPS, "units": sorted(needed.steps)},))
     deadline, problem, certificate = settings.effective_deadline, needed.shown, None

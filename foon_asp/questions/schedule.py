@@ -391,7 +391,7 @@ def _status_of(solution: BestSchedule) -> Status:
 def _executable_tree(tree: Tree) -> Tree:
     """Return a tree in an order that executes.
 
-    If no order executes, the tree is returned in the listed order where items last. Where they are used up,
+    If no order executes and items last, the listed order is kept. If no order executes and items are used up,
     raises :class:`NoTreeError`.
     """
     if tree.problem.items is None:
@@ -480,8 +480,8 @@ def _known_durations(
 def _tool_counts(stated: Tools | None) -> dict[ToolName, int | None]:
     """Return the stated numbers of tools by label or node; ``None`` for an unlimited number.
 
-    They are read from a file, or checked. Raises :class:`UserError` for a wrong number or label. If
-    ``stated`` is ``None``, the result is empty.
+    ``stated`` is the path of a file to read, or numbers to check. If it is ``None``, the result is empty.
+    Raises :class:`UserError` for a wrong number or label.
     """
     if stated is None:
         return {}

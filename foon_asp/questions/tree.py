@@ -196,7 +196,7 @@ class Tree(TaskTree):
 def as_tree(problem: Problem, tree: str | PathLike[str] | Iterable[FunctionalUnit]) -> Tree:
     """Return a tree for a problem: read from the path of a file, or made of units.
 
-    Another tree keeps its places, and loses its claim.
+    If ``tree`` is a :class:`Tree`, its places are kept and its claim is not.
     """
     if isinstance(tree, str | PathLike):
         return Tree.read(problem, tree)

@@ -126,7 +126,7 @@ class AboutGoals(Document, frozen=True, kw_only=True):
     def goal_lines(self, shown: int = 5) -> Iterator[str]:
         """Yield a line for each goal, with the copies wanted if these are not one.
 
-        Below level 3, up to ``shown`` of the level-3 nodes follow that a goal stands for.
+        Below level 3, each line is followed by up to ``shown`` level-3 nodes that the goal stands for.
         """
         for goal in self.goals:
             yield f"goal: {goal}" if goal.wanted is UNSET else f"goal: {goal.wanted} x {goal}"
