@@ -201,7 +201,7 @@ def _mostly_agree(left: FunctionalUnit, right: FunctionalUnit) -> bool:
 
 
 def _features(unit: FunctionalUnit) -> Iterator[object]:
-    """Yield the features of a unit: its motion, and each name in a node with side and label of the node."""
+    """Yield the features of a unit: its motion, and each name in its nodes with the node's side and label."""
     yield unit.motion
     for side, nodes in enumerate((unit.inputs, unit.outputs)):
         for node in nodes:

@@ -228,7 +228,7 @@ class Network:
         """Return this network with some units a second time, after all others.
 
         Only the ids distinguish a copy from its unit; :meth:`unit_id` returns the id of the unit. If there
-        are ``unit_numbers``, those of the copies follow the last one.
+        are ``unit_numbers``, the copies get the numbers after the last one.
 
         Parameters:
             units: The ids of the units to copy, in the order of the copies.

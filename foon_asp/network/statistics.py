@@ -16,7 +16,7 @@ MANY = 4  # units that make a node; nodes with as many or more are counted toget
 class Statistics:
     """The counts of a network at one level; every mean is over units.
 
-    ``labels``, ``motions``, ``states``, ``relations`` and ``contents`` count different ones.
+    ``labels``, ``motions``, ``states``, ``relations`` and ``contents`` count each different one once.
     ``producers[n]`` is the number of object nodes that exactly ``n`` units make; its last entry counts the
     nodes that ``MANY`` or more units make. ``most_producers`` is the greatest number of units that make one
     node. ``unused`` counts the object nodes that no unit needs, and ``unchanged`` the units whose inputs are

@@ -58,9 +58,9 @@ class Role(Flag):
 class Option(NamedTuple):
     """An option of a question, for the command line and Python, as plain data.
 
-    In the annotation of a parameter (``Annotated[int, Option(...)]``), an option without a name takes its
-    name and default from the parameter. Without ``help``, it takes the first sentence of the parameter's
-    entry in the docstring.
+    An option may be in the annotation of a parameter (``Annotated[int, Option(...)]``). If it has no name, it
+    takes its name and default from the parameter. Without ``help``, it takes the first sentence of the
+    parameter's entry in the docstring.
 
     ``name``: the name of the parameter.
     ``help``: the description on the command line and in Python.
@@ -70,7 +70,7 @@ class Option(NamedTuple):
     ``flags``: the flags of the command line; by default ``--name`` with dashes for underscores.
     ``many``: whether it may be repeated.
     ``metavar``: the word for the value in help; by default the word of its type, and ``FILE`` for a file.
-    ``choices``: the values allowed; a function that lists them, if other packages may add some.
+    ``choices``: the values allowed, or a function that lists them if other packages may add some.
     ``least``: the smallest number allowed.
     ``positional``: whether it has no flag; it must then be given, unless it may be repeated.
     ``optional``: whether it may be left out although it is positional.
@@ -140,10 +140,10 @@ def question(
 ) -> Callable[[Callable[P, R]], Callable[P, R]]:
     """Return a decorator that wraps a function for Python, and describes it for a command line.
 
-    The description is a :class:`Question`, which :func:`question_of` returns; the arguments are its fields.
-    Its options are ``options``, and after them those in the annotations of the function's parameters. The
-    question supports items that are used up if it has an option for them, or if ``used_up`` says so.
-    Otherwise, it raises :class:`UserError` for a problem with such items.
+    The description is a :class:`Question`, which :func:`question_of` returns; the arguments become its
+    fields. Its options are ``options``, followed by the options in the annotations of the function's
+    parameters. The question supports items that are used up if it has an option for them, or if ``used_up``
+    says so. Otherwise, it raises :class:`UserError` for a problem with such items.
     """
 
     def decorate(ask: Callable[P, R]) -> Callable[P, R]:

@@ -219,8 +219,8 @@ def regret(
 
         ``parts`` name what is left out, as parameters of :func:`_regret_of_parts`. If a limit or ctrl-C stops
         ``leave_out``, the status of the regret is ``UNKNOWN``. Without rules, raises :class:`BugError` if the
-        optimum is better without the part. An item may be left out by ``kitchen`` at a lower cost, so this is
-        not checked.
+        optimum is better without the part. By ``kitchen``, the optimum may be better without an item, which
+        is no bug.
         """
         try:
             with settings.effective_deadline.watched(

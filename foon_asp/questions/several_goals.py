@@ -51,7 +51,7 @@ def _solve_apart(answer: Answer, settings: Settings, posed: Problem) -> list[Out
     """Return the best outcome for each goal by itself, in the order of the goals.
 
     Without rules, raises :class:`BugError` if one goal alone costs more than all goals together. ``posed`` is
-    that of :func:`with_goals_apart`. Nothing is reported to the caller.
+    the problem that was asked about. Nothing is reported to the caller.
     """
     together, problem, objectives = answer.outcome, answer.problem, answer.objectives
     if isinstance(posed, NearbyProblem):

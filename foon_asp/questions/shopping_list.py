@@ -97,9 +97,10 @@ class Shopping(WithAnswer, frozen=True, kw_only=True, tag=schema_name("shopping-
     """Lists of things to add to the kitchen, and the best tree with the first list.
 
     Attributes:
-        offer: The nodes that could be bought. With a price list: those with a price (priced). Without one,
-            the first set in this list that is enough: those for sale (for sale), also nodes of a cycle that
-            feeds only itself (cycle), all but the dish (processed), all but the goals (dish), or all (goal).
+        offer: The nodes that could be bought. priced: those on the price list, if there is one. Otherwise, the
+            first set from which the goals can be made. for sale: raw nodes, tools and vessels, unprocessed
+            nodes; cycle: also nodes of cycles that feed only themselves; processed: all but the dish; dish:
+            all but the goals; goal: all.
         lists: The lists, the cheapest first. Of lists with one price and number of items, those with the
             fewest mixtures and made things come first, then that with the best tree. Empty if no list helps.
         complete: Whether it is proved that there are no more lists.

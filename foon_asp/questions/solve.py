@@ -157,7 +157,7 @@ def solve(
             digests that the store states. Where items are used up, the certificate has a lower bound on the
             cost of every plan, and a plan. If the plan costs more, it claims only a ``bound``.
         cross_check: Also ask other engines: bare clingo, HiGHS, Fast Downward and those of packages, if
-            installed. Each has its part of what is left of the ``time_limit``, or a minute without one.
+            installed. They share what is left of the ``time_limit``; without one, each has a minute.
         skip_unreachable: Leave out goals that cannot be made from the kitchen, and list each with its cause.
             Constraints are not looked at for that. If no goal can be made, none is left out.
         clingo_options: Options to pass to clingo, for example ``["--opt-strategy=bb"]``.

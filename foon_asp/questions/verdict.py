@@ -75,7 +75,7 @@ def verdict_lines(tree: Tree, simulation: Simulation) -> Iterator[str]:
     """Yield lines: the verdict, the obstacles, the costs and notes.
 
     If the network lacks units of the tree, these are listed in place of the costs. If only another order
-    executes, it comes last.
+    executes, that order comes last.
     """
     problem, verdict = tree.problem, simulation.verdict
     yield f"{verdict} ({problem.conditions})"

@@ -233,7 +233,7 @@ def _rule_text(rule: Rule) -> str:
 
 
 def _cost_text(objective: str, cost: int | Fraction | None) -> str:
-    """Return a cost with its objective, as ``3 units``; success also rounded."""
+    """Return a cost with its objective, as ``3 units``; success has its exact and its rounded value."""
     return f"success {cost} ≈ {float(cost or 0):.4g}" if objective == "success" else f"{cost} {objective}"
 
 

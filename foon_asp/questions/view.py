@@ -439,7 +439,7 @@ def _units_drawing(about: Problem | Foon, unit_ids: Sequence[int]) -> Drawing:
 def _drawing_without_goals(
     foon: Foon, rule: ContainerRule, tree: str | PathLike[str] | Iterable[FunctionalUnit]
 ) -> Drawing:
-    """Return the drawing of a tree without goals, with the part of the data that it touches.
+    """Return the drawing of a tree where no goals are given; only the data that it touches are read.
 
     ``rule`` is the container rule. A unit that is listed twice is drawn once.
     """
@@ -458,7 +458,7 @@ def pages(
     wanted: Container[str],
     rules: Mapping[str, Any],
 ) -> Iterator[View]:
-    """Yield a page about a tree as it grows: first with its answer, then each time with one more part.
+    """Yield a page several times: first with the answer, then each time with one more part.
 
     ``wanted`` are the names of the parts (:class:`PagePart`); ``rules`` are the rules of the settings, as
     keywords of questions. The first page has the network and, unless items are used up, the proof. Other

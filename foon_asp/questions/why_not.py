@@ -33,7 +33,7 @@ if TYPE_CHECKING:  # takes clingo along, which only rules need
 
 
 class _MaxShown(NamedTuple):
-    """The greatest numbers that an explanation shows as text; JSON has all of it.
+    """The greatest numbers that an explanation shows as text; its JSON has everything.
 
     ``roots``: causes that are explained.
     ``dead_ends``: dead ends that are expanded.
@@ -100,7 +100,7 @@ class CycleStep(Value, frozen=True):
 
 
 class Root(Value, frozen=True):
-    """A cause of dead ends: an object node that is missing, or that can only be made from itself.
+    """A reason why goals cannot be made: an object node that is missing or can only be made from itself.
 
     Attributes:
         cause: missing: it is not in the kitchen and no unit makes it; cycle: it can only be made from itself.

@@ -17,7 +17,7 @@ T = TypeVar("T")
 
 
 class Unserialized(Generic[T]):
-    """Descriptor of a property of a document that is not in its JSON.
+    """A descriptor of a property that a document has, but its JSON does not have.
 
     :meth:`Document.set_unserialized` sets the property. Before that, it has the ``default``; without a
     default, it raises :class:`AttributeError`.
