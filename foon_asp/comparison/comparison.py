@@ -242,8 +242,8 @@ def simulate_retrieval(problem: Problem, units: Sequence[int], tree: TaskTree) -
     """Return the simulation of a tree that a search returned; ``units`` are its ids.
 
     Where items last, the tree is simulated. Where items are used up, a plan is simulated that executes each
-    unit once: in the order listed, or else in another one that runs. A tree that does not execute even if
-    items last is always simulated as if they did.
+    unit once: in the order listed, or else in another one that runs. If the tree does not execute even with
+    lasting items, the result is the simulation with lasting items.
     """
     simulation = simulate_for(problem, tree)
     if problem.items is None or simulation.verdict is Verdict.NEVER:

@@ -110,9 +110,9 @@ def _shortest_cycle(
 ) -> DeadCycle:
     """Return the dead cycle of ``nodes``, which are strongly connected; its steps are a shortest cycle.
 
-    ``producers`` are the units that make a node of the set, in rising order. Of all cycles through one node,
-    the shortest is found by breadth-first search. This node is in the set, and it is the first such input of
-    the first producer. ``made`` has for each unit the nodes that it makes and does not need.
+    ``producers`` are the units that make a node of the set, in rising order. The cycle is found by
+    breadth-first search from an input of the first producer. ``made`` has for each unit the nodes that it
+    makes and does not need.
     """
     consumers: dict[int, list[int]] = {}
     for unit in producers:

@@ -97,10 +97,10 @@ class Shopping(WithAnswer, frozen=True, kw_only=True, tag=schema_name("shopping-
     """Lists of things to add to the kitchen, and the best tree with the first list.
 
     Attributes:
-        offer: The nodes that could be bought. priced: those on the price list, if there is one. Otherwise, the
-            first set from which the goals can be made. for sale: raw nodes, tools and vessels, unprocessed
-            nodes; cycle: also nodes of cycles that feed only themselves; processed: all but the dish; dish:
-            all but the goals; goal: all.
+        offer: The nodes that could be bought: those on the price list (priced) or, without one, the first set
+            from which the goals can be made. The sets are: raw nodes, unprocessed nodes, tools and vessels
+            (for sale); also nodes of a cycle that feeds only itself (cycle); all but the dish (processed);
+            all but the goals (dish); all (goal).
         lists: The lists, the cheapest first. Of lists with one price and number of items, those with the
             fewest mixtures and made things come first, then that with the best tree. Empty if no list helps.
         complete: Whether it is proved that there are no more lists.
@@ -633,8 +633,8 @@ def _lists_under_rules(
 
     ``sold`` are prices by id of the node. Of equally cheap lists, clingo prefers those without
     ``second_choices``, which are mixtures and nodes that units make. An empty list is the last one, since
-    nothing has to be bought. With ``compared``, the lists after number ``max_lists`` that cost as much are
-    returned too, up to 30 in all. The caller then chooses by the trees. Raises :class:`UserError` for prices
+    nothing has to be bought. With ``compared``, there are up to 30 lists: further lists have the price of
+    list number ``max_lists``, and the caller chooses by the trees. Raises :class:`UserError` for prices
     beyond 32 bits.
     """
     scale = math.lcm(*(price.denominator for price in sold.values()))

@@ -481,7 +481,8 @@ def _step_ids(content: Any) -> list[int]:
 def _needs_whole_network(content: Any) -> bool:
     """Return whether the check of a certificate looks at every unit.
 
-    It does for a certificate of a plan or with rules or prices, and for a value that is no certificate.
+    It is true for a certificate that is about a plan, or that has rules or prices. It is also true for a
+    value that is no certificate.
     """
     if not isinstance(content, dict) or is_of_plan(content):
         return True

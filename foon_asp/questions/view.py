@@ -467,8 +467,8 @@ def pages(
     - Where items are used up and there are no rules: the answer for lasting items, and its proof. No plan
       costs less than this answer, except by ``kitchen``; there is no proof by ``kitchen``.
     - Under rules: the answer without them.
-    - If there is no tree: why, and a shopping list unless rules are the reason. No other part follows. If
-      there is no plan only because items run out, this part is left out.
+    - If there is no tree: why, and a shopping list unless rules are the reason. No other part follows. For
+      a plan, this part is left out if there is a tree for lasting items.
     - The searches, the five best alternatives and the front, as far as they are wanted.
 
     The limits of ``settings`` are for all pages together.

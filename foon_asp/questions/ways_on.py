@@ -42,7 +42,7 @@ class WaysOn(WithAnswer, frozen=True, kw_only=True, tag=schema_name("state")):
         lacks: The fewest object nodes to add to the state so that the goals can be made, found as a shopping
             list. Empty if the goals can be made already; null if nothing helps, or a limit came first.
         units: The units of all irredundant trees from the state, to which the nodes in ``lacks`` are added.
-            Units that can run now come first. Of equals, units of the best tree come first.
+            Units that can run now come before the others; in both groups, units of the best tree come first.
         answer: The best tree from the state with the nodes it lacks; null without one.
 
     Example:

@@ -15,8 +15,8 @@ def iterative_deepening(problem: Problem, settings: SearchSettings) -> Retrieval
 
     The depth limit grows from 0. Within a limit, the achievers of an object are tried in file order, until
     all preconditions of one are solved within the limit minus 1. Results are kept, so that each limit takes
-    at most one pass over the relevant units. If no new object is solved within a limit, a larger
-    limit does not help, and the search ends.
+    at most one pass over the relevant units. If no new object is solved within a limit,
+    a larger limit does not help, and the search ends.
 
     At a limit of the ``settings`` (depth, time or memory), the ending is ``unknown``. With ``published``,
     breadth-first retrieval is run instead, with its ``ties``, as the published programs do under this name.
