@@ -43,8 +43,8 @@ class RowsFile(Generic[Row]):
     ``done``: the rows by key; the last one of rows that share a key.
     ``duplicate_warnings``: a warning for each row that was read and has the key of an earlier row.
 
-    Raises :class:`UserError`, and leaves the file unchanged, if another run writes it, or if it has another
-    question, lines of another version, or other contents.
+    Raises :class:`UserError` if another run writes the file, or if the file has another question, lines of
+    another version, or other contents. The file is then unchanged.
     """
 
     def __init__(self, path: Path, form: RowForm[Row], question: Json) -> None:

@@ -183,7 +183,7 @@ def regret(
         units: A unit to ask about as well, by its id.
         motions: A motion to ask about as well, the optimum without all of its units.
         pairs: Ask about pairs of kitchen items as well. The best tree takes both items
-            of a pair, and if only one of the two is left out, there is still a tree.
+            of a pair. If only one of the two is left out, there is still a tree.
 
     Returns:
         The best tree as the ``answer``, and the ``regrets``, of which the greatest loss comes first.
@@ -290,8 +290,7 @@ def _regret_of_parts(
 def _loss_by(best: Costs, remaining: Costs, objective: Objective) -> int | Fraction:
     """Return by how much the remaining costs are worse by an objective.
 
-    It is a difference; for ``success`` it is the share of the best rate that is lost, and 0 if that rate is
-    0.
+    It is a difference; for ``success``, the share of the best rate that is lost, or 0 if the best rate is 0.
     """
     best_figure, figure = best.measure(objective), remaining.measure(objective)
     if multiplies(objective):

@@ -73,7 +73,7 @@ class RateEnd(Value, frozen=True):
 
 
 class RateInterval(Value, frozen=True):
-    """The interval of rates of one motion in which the best tree stays the best; other rates do not change.
+    """The rates of one motion at which the best tree stays the best, while other rates do not change.
 
     Attributes:
         rate: The rate that is given.

@@ -13,7 +13,7 @@ from foon_asp.results.values_of import node_of, nodes_of
 
 
 class GoalsApartTuning(NamedTuple):
-    """The limit up to which the goals of a tree are also solved one by one.
+    """The limit of how many goals of a tree are also solved one by one.
 
     ``goals``: the greatest number of goals. Each goal takes one more search and one more line; for more goals
     there is the option ``--all-goals``.

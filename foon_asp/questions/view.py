@@ -542,7 +542,7 @@ def pages(
 
 
 def _front_objectives(chosen: Sequence[Objective], rated: bool) -> tuple[Objective, ...]:
-    """Return the objectives of a front for a question with one objective: that one, and a second.
+    """Return two objectives for a front: the only objective of the question, and a second.
 
     The second is ``units``. For a question by ``units``, it is ``success``, or ``inputs`` without rates.
     """

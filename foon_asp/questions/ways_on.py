@@ -68,7 +68,7 @@ class WaysOn(WithAnswer, frozen=True, kw_only=True, tag=schema_name("state")):
         """Return the nodes that the state lacks, the units that can run now, and the best tree.
 
         Up to ten units that can run now are listed. Of the other units, only the number is shown. If the
-        state has the goals, or if nothing was found that would help, there is only a line that says so.
+        state has the goals, or if nothing was found that would help, there is instead one line that says so.
         """
         yield from self.goal_lines()
         if self.reached:

@@ -61,7 +61,7 @@ def _reason_lines(problem: Problem, shown: int = 5) -> Iterator[str]:
 
 
 def _cause_lines(problem: Problem, shown: int = 3) -> Iterator[str]:
-    """Yield a line for each of the first ``shown`` causes that no tree exists.
+    """Yield a line for each of the first ``shown`` causes why there is no tree, and one for the others.
 
     A cause is a missing node, or a cycle of nodes that can only be made from each other. Causes are those on
     the path to the goals that lacks the fewest nodes. A missing goal is left out, since another line names

@@ -57,7 +57,7 @@ _MAX_SHOWN = _MaxShown()
 
 
 class NearName(Value, frozen=True):
-    """A name that is one edit away from that of a missing node.
+    """A name that is one edit away from the name of a missing node.
 
     Attributes:
         name: A node of the network, or an entry of the kitchen file that matches no node.
