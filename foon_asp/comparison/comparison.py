@@ -63,8 +63,8 @@ class SearchResult(Value, frozen=True):
         measures: What the tree costs by each objective that is compared.
         ratios: The measure divided by the optimum; null if the optimum is not proved, or 0.
         verdict: Whether the tree executes; null without a tree.
-        order: Positions of steps, from 1, in an order in which they run. If the tree does not execute, steps that
-            cannot run are missing. Empty without a tree.
+        order: Positions of steps, from 1, in an order in which they run. If the tree does not execute, steps
+            may be missing. Empty without a tree.
         obstacle: What stops every order; null if nothing does.
         runs_used_up: Whether the tree runs, in some order, where items are used up and each step is done
             once; null where that is not known.

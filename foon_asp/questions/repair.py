@@ -156,8 +156,8 @@ def repair(
         The repair, with its ``stand_ins``, ``added`` steps and the repaired ``tree``.
 
     Raises:
-        UserError: if the file cannot be read, for a problem in which items are used up, for constraints or
-            encodings, or for a certificate about units that the network does not have.
+        UserError: if the file cannot be read, if items are used up, if there are constraints or encodings, or
+            if a certificate is wanted and the network lacks a unit of the tree.
 
     Example:
         >>> problem = foon_asp.load().problem("ice")

@@ -294,8 +294,8 @@ def stats(
         ``explain_items`` or ``stays``, each of their inputs says whether it stays.
 
     Raises:
-        UserError: for a file that cannot be read, or a unit that the network does not have; for a name in
-            ``stays`` that the network does not have; and where inputs are to be explained below level 3.
+        UserError: for a file that cannot be read, for a unit or a name in ``stays`` that the network does not
+            have, and if inputs are to be explained below level 3.
 
     Example:
         >>> counts = foon_asp.stats(foon_asp.load())
