@@ -217,7 +217,7 @@ def repair(
 def _certify_repair(
     needed: Repair, outcome: Outcome, settings: Settings
 ) -> tuple[Outcome, Certificate | None]:
-    """Return the outcome of a repair, and a certificate that proves it the cheapest or that none exists.
+    """Return the outcome of a repair, and a certificate that it is the cheapest or that no repair exists.
 
     The certificate is ``None`` if nothing is proved, or if it is not found in time. If it covers all
     objectives, it becomes the proof of the outcome. If it proves only a bound, the outcome is unchanged.

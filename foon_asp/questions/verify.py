@@ -79,7 +79,7 @@ class VerifiedCertificate(Result, AboutGoals, frozen=True, kw_only=True, tag=sch
         checked: In words, what clingo checked of user-defined measures and rules.
         not_covered: The constraints that the claim is not about.
         tree: The units of the tree, by id; null without a tree.
-        proved_by: In words, how many cuts the proof has; for plans, also for how many nodes it uses a balance.
+        proved_by: In words, how many cuts the proof has; for plans, also how many nodes it has a balance of.
         used_up: In words, the stock, the copies wanted, and the items that stay, as the claim states them;
             null where items last.
         proved_checker: The answer of the checker proved in Coq: accepted, or why it did not check the
