@@ -216,7 +216,7 @@ def starting_kitchen(network: Network) -> NetworkStartingKitchen:
 
 
 def starting_nodes(network: Network, goals: Collection[int] = ()) -> frozenset[int]:
-    """Return the ids of the nodes of the starting kitchen, as these goals change it."""
+    """Return the ids of the nodes of the starting kitchen for these goals."""
     kitchen = starting_kitchen(network)
     added, removed = kitchen.changes_for_goals(goals)
     return kitchen.nodes.union(added).difference(removed)

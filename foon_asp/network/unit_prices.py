@@ -47,7 +47,7 @@ class UnitPrices(NamedTuple):
         )
 
     def _own_level_prices(self, network: Network) -> tuple[Fraction | None, ...]:
-        """Return the price of each unit of a network, whatever its level; ``None`` if there is none."""
+        """Return the price of every unit of a network of any level; ``None`` for a unit without a price."""
         priced_motions = {unit.motion for unit in self.units}  # spares looking up units of other motions
         return tuple(
             self.price(network.unit(unit)) if motion in priced_motions else self.motions.get(motion)

@@ -246,7 +246,7 @@ def shopping_list(
     Parameters:
         prices: A price list: lines of an object node, a tab and a price; only what has a price can be bought.
             In Python also prices by name. A label stands for all its nodes that would be for sale. Without
-            prices, every node counts one.
+            prices, every node costs 1.
         lists: How many lists to find, at most.
 
     Returns:

@@ -154,8 +154,8 @@ def solve(
         certificate: The path of a file to write a certificate to: a proof of the answer that
             :func:`foon_asp.verify` checks without a solver. It is about the whole network. If
             there are no rules, only the part of a store that the proof touches is read; the certificate then
-            names the digests that the store states. Where items are used up, the certificate has a plan, and a
-            lower bound on the cost of every plan. If the plan costs more, it claims only a ``bound``.
+            names the digests that the store states. Where items are used up, the certificate has a plan, and
+            a lower bound on the cost of every plan. If the plan costs more, it claims only a ``bound``.
         cross_check: Also ask other engines: bare clingo, HiGHS, Fast Downward and those of packages, if
             installed. They share what is left of the ``time_limit``; without one, each has a minute.
         skip_unreachable: Leave out goals that cannot be made from the kitchen, and list each with its cause.

@@ -237,7 +237,7 @@ class ListedUnits(Result, frozen=True, kw_only=True, tag=schema_name("units")):
     units: tuple[ExplainedUnit, ...]
 
     def show(self) -> Iterator[Block]:
-        """Return a line for each unit; on request, also its inputs, with why they stay, and its outputs."""
+        """Return a line for each unit; on request, lines for its inputs (with why they stay) and its outputs."""
         for unit in self.units:
             yield from step_lines([unit])
             explained = [node for node in unit.inputs if node.why is not UNSET]
