@@ -88,7 +88,7 @@ def find_offers(group: str) -> list[Offer]:
     """Return the offers of installed packages in a group, sorted by package and name; none is imported.
 
     Of a package that is installed twice, only the first installation on Python's path counts. Raises
-    :class:`UserError` if a package mentions the group, and its entry points cannot be read.
+    :class:`UserError` if a package mentions the group but its entry points cannot be read.
     """
     from importlib import metadata  # noqa: PLC0415 (slow to import, and seldom needed)
 

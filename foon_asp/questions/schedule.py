@@ -391,8 +391,8 @@ def _status_of(solution: BestSchedule) -> Status:
 def _executable_tree(tree: Tree) -> Tree:
     """Return a tree in an order that executes.
 
-    If no order executes and items last, the listed order is kept. If no order executes and items are used up,
-    raises :class:`NoTreeError`.
+    If no order executes where items last, the listed order is kept. If no order executes where items are used
+    up, raises :class:`NoTreeError`.
     """
     if tree.problem.items is None:
         simulation = simulate_for(tree.problem, tree)

@@ -272,7 +272,7 @@ class Lack(Value, frozen=True):
     """A missing copy of an object node.
 
     Attributes:
-        position: The number of the step that lacks it, from 1; null for a goal in the end.
+        position: The number of the step that lacks it, from 1; null if a goal lacks it in the end.
         used_up_by: The numbers of the steps that used up the copies, from 1.
         amount: How many copies are needed, if that is not one.
         unit: The unit of the step, if the plan was replayed; null for a goal.
