@@ -56,7 +56,7 @@ def read_questions(
 
 
 def files_of_questions(questions: Iterable[BatchQuestion]) -> set[Path]:
-    """Return the paths of the kitchens, stocks and lists of what stays that questions name.
+    """Return the paths of the files that questions name: kitchens, stocks and lists of what stays.
 
     The kitchen ``@starting`` is no file, and left out.
     """

@@ -31,8 +31,8 @@ class UnitDifference(NamedTuple):
     def is_slip(self) -> bool:
         """Whether one of the two texts may be a typing error, since they are spelled almost alike.
 
-        They are if they differ by one letter, or only in doubled letters, capitals, blanks and punctuation.
-        An empty text is like no other.
+        Texts are spelled almost alike if they differ by one letter, or only in doubled letters, capitals,
+        blanks and punctuation. An empty text is like no other.
         """
         return bool(self.left and self.right) and (
             one_letter_apart(self.left, self.right)

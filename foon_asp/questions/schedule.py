@@ -192,7 +192,7 @@ def _schedule_or_template(
 ) -> Result:
     """Return the schedule; with ``durations_template``, only write that file of durations to be filled in.
 
-    Durations that are known are in the file already. Raises :class:`UserError` if the file exists.
+    Known durations are filled in already. Raises :class:`UserError` if the file exists.
     """
     if durations_template is None:
         return schedule(problem, plan, **options)

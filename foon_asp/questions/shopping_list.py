@@ -549,7 +549,7 @@ class _Shopper:
         self._solved = SolvedGoals()
 
     def lists(self, max_lists: int) -> _Lists:
-        """Return up to ``max_lists`` lists, the cheapest first; at a limit, those found by then.
+        """Return up to ``max_lists`` lists, the cheapest first; at a limit, the lists found so far.
 
         If nothing has to be bought, the only list is empty. If ``max_lists`` lists are found, others are not
         ruled out, so the lists are not complete.

@@ -124,7 +124,7 @@ class AboutGoals(Document, frozen=True, kw_only=True):
         return text if self.items == "lasting" else f"{text}, items used up"
 
     def goal_lines(self, shown: int = 5) -> Iterator[str]:
-        """Yield a line for each goal, with the copies wanted if these are not one.
+        """Yield a line for each goal, with the number of copies wanted unless it is one.
 
         Below level 3, each line is followed by up to ``shown`` level-3 nodes that the goal stands for.
         """

@@ -10,7 +10,7 @@ def breadth_first(problem: Problem, settings: SearchSettings) -> Retrieval:
     """Retrieve a tree breadth-first.
 
     For each object, the first achiever in file order is chosen, even if it can never execute. If ``ties`` of
-    the settings is ``last``, it is the last achiever instead. The tree has only the guarantees of
+    the settings is ``last``, the last achiever is chosen instead. The tree has only the guarantees of
     :func:`~foon_asp.searches.retrieval.retrieve_backward`.
     """
     return retrieve_backward(problem, least_chooser(settings.ties))
