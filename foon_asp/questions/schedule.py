@@ -190,7 +190,7 @@ class WrittenDurations(Result, frozen=True, kw_only=True, tag=schema_name("durat
 def _schedule_or_template(
     problem: Problem, plan: Tree, *, durations_template: Path | None = None, **options: Any
 ) -> Result:
-    """Return the schedule; with ``durations_template``, only write that file of durations to be filled in.
+    """Return the schedule; with ``durations_template``, only write this file of durations to be filled in.
 
     Known durations are filled in already. Raises :class:`UserError` if the file exists.
     """

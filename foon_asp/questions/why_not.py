@@ -380,9 +380,9 @@ def why_not(
 def _cheapest_stand_ins(problem: Problem, settings: "Settings") -> tuple[StandIn, ...] | UnsetType:
     """Return the cheapest stand-ins of the usual table with which there is a tree without rules.
 
-    If a limit stops the search, return the cheapest found so far. Return ``UNSET`` if there are none.
-    Stand-ins cannot be used below level 3, for items that are used up, and in a problem that has stand-ins
-    already; return ``UNSET`` there, too.
+    If a limit stops the search, return the cheapest found so far. Return ``UNSET`` if there are none. Return
+    ``UNSET``, too, if stand-ins cannot be used: below level 3, if items are used up, or if the problem has
+    stand-ins already.
     """
     level, has_motion = problem.network.level, STAND_IN in problem.network.different_motions
     if level < 3 or problem.items is not None or has_motion:
