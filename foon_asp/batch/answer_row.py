@@ -103,7 +103,7 @@ def _row(question: BatchQuestion, **answer: Any) -> AnswerRow:
 def _row_of_outcome(question: BatchQuestion, outcome: Outcome) -> AnswerRow:
     """Return the row of a question with the outcome of the solver.
 
-    For a tree, it is also found whether the tree runs where items are used up.
+    If there is a tree, the row also says whether it runs where items are used up.
     """
     problem, units = outcome.problem, outcome.units
     row = _row(

@@ -86,9 +86,9 @@ def answer_on_cluster(
 def _answer_first_questions(
     opener: Opener, chunk: tuple[BatchQuestion, ...], memory_limit: int | None, settings: Settings | None
 ) -> list[AnswerRow]:
-    """Return the rows of the first questions of a chunk, those that can begin within half a second.
+    """Answer the questions of a chunk in order, and return the rows; after half a second, begin no other one.
 
-    The first question is always answered. The caller asks the other questions again.
+    The first question is always answered. The caller asks again the questions that have no row.
     """
     data = _open_cached(opener)
     began = time.monotonic()

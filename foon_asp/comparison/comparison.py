@@ -63,8 +63,8 @@ class SearchResult(Value, frozen=True):
         measures: What the tree costs by each objective that is compared.
         ratios: The measure divided by the optimum; null if the optimum is not proved, or 0.
         verdict: Whether the tree executes; null without a tree.
-        order: Positions of steps, from 1, in an order in which they run: all steps if the tree executes, else
-            at most those that can run. Empty without a tree.
+        order: Positions of steps, from 1, in an order in which they run. If the tree does not execute, steps
+            may be missing. Empty without a tree.
         obstacle: What stops every order; null if nothing does.
         runs_used_up: Whether the tree runs, in some order, where items are used up and each step is done
             once; null where that is not known.
@@ -131,10 +131,10 @@ def compare(
 ) -> Comparison:
     """Return the results of searches on a problem of one goal, and the optimum by each objective.
 
-    The trees of the searches are simulated. ``time_limit`` is in seconds for each optimum. The
-    memory limit of ``settings`` is also for each. The optimum by ``success`` is left out where no rates
-    are known. Optima keep to the ``rules``; the searches ignore them, and results list the rules that a tree
-    breaks. Raises :class:`BugError` if a tree that executes is better than a proved optimum.
+    The trees of the searches are simulated. For each optimum, the limits are ``time_limit`` in seconds and
+    the memory limit of ``settings``. The optimum by ``success`` is left out where no rates are known. Optima
+    keep to the ``rules``. The searches ignore the rules; each result lists the rules that its tree breaks.
+    Raises :class:`BugError` if a tree that executes is better than a proved optimum.
     """
     solver_settings = rules or Settings()
     optima: dict[Objective, Optimum] = {}
@@ -155,8 +155,8 @@ def compare(
 def _require_consistent(comparison: Comparison) -> None:
     """Raise :class:`BugError` where a tree that executes is better than a proved optimum.
 
-    Raise it also for a tree that executes where it was proved that none exists. Trees that break a rule are
-    not looked at.
+    Raise it also if a tree executes although it was proved that none exists. Trees that break a rule are not
+    looked at.
     """
     for result in comparison.searches:
         if not result.is_valid:
@@ -171,7 +171,7 @@ def _require_consistent(comparison: Comparison) -> None:
 
 @lru_cache(maxsize=1)
 def _rule_check_of(rules: Settings, used_up: bool) -> "UserRuleCheck":
-    """Return the check of trees against user rules; of plans if items are used up (``used_up``).
+    """Return the check against user rules: of trees or, if items are used up (``used_up``), of plans.
 
     The last check is kept in a cache, since many goals share it.
     """
@@ -241,9 +241,9 @@ def _ratio_to_optimum(measure: Figure, optimum: Optimum | None) -> Fraction | No
 def simulate_retrieval(problem: Problem, units: Sequence[int], tree: TaskTree) -> Simulation:
     """Return the simulation of a tree that a search returned; ``units`` are its ids.
 
-    Where items are used up, it is the simulation of a plan that executes each unit once, in the order listed
-    or in another one that runs. But a tree that does not execute even if items last has the simulation for
-    lasting items.
+    Where items last, the tree is simulated. Where items are used up, a plan is simulated that executes each
+    unit once: in the order listed, or else in another one that runs. If the tree does not execute even with
+    lasting items, the result is the simulation with lasting items.
     """
     simulation = simulate_for(problem, tree)
     if problem.items is None or simulation.verdict is Verdict.NEVER:

@@ -45,8 +45,8 @@ def comparisons_question(
 ) -> Json:
     """Return the question of a file of comparisons: a digest of the data, searches, settings and rules.
 
-    It does not depend on the goals. The first line of the file states it. A run continues a file only if the
-    question is equal.
+    The question does not depend on the goals. It is the first line of the file. A run continues a file only
+    if the questions of both are equal.
     """
     subject = Subject(problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices)
     data: list[object] = [subject.digests()]

@@ -63,8 +63,7 @@ def _compare_on_goal(
 ) -> Comparison:
     """Compare the searches on one goal.
 
-    ``numbered`` is a pair: the index of the goal in the list of goals, which is not used, and the id of the
-    goal.
+    ``numbered`` is a pair: an index, which is not used, and the id of the goal.
     """
     _, goal = numbered
     return compare(replace(problem, goals=(goal,)), searches, settings, time_limit, rules)

@@ -40,11 +40,11 @@ class RowsFile(Generic[Row]):
     written to the disk at once. The file is locked until it is closed or the process ends. An existing file
     is continued: its rows are read, and an incomplete last line, from an interruption, is dropped.
 
-    ``done``: the rows by key; of rows with one key, the last.
+    ``done``: the rows by key; the last one of rows that share a key.
     ``duplicate_warnings``: a warning for each row that was read and has the key of an earlier row.
 
-    Raises :class:`UserError`, and leaves the file unchanged, if another run writes it, or if it has another
-    question, lines of another version, or other contents.
+    Raises :class:`UserError` if another run writes the file, or if the file has another question, lines of
+    another version, or other contents. The file is then unchanged.
     """
 
     def __init__(self, path: Path, form: RowForm[Row], question: Json) -> None:

@@ -11,10 +11,9 @@ from foon_asp.network.graph import cycles
 class DeadCycle(NamedTuple):
     """A set of object nodes, each made only by units that need a node of the set.
 
-    ``nodes`` are the ids of the set. ``steps`` are a shortest cycle through one of them. The cycle begins
-    with an input of the unit with the lowest id that makes a node of the set. Each step is the id of a node
-    and the id of a unit that needs the node. The unit makes the node of the next step; the last unit makes
-    the node of the first step.
+    ``nodes`` are the ids of the set. ``steps`` are a shortest cycle through one of them. Each step is the id
+    of a node and the id of a unit that needs the node. The unit makes the node of the next step; the last
+    unit makes the node of the first step.
     """
 
     steps: tuple[tuple[int, int], ...]
@@ -28,7 +27,8 @@ def dead_cycles(network: Network, available: Collection[int] = ()) -> list[DeadC
     unit makes count as available. If there is no dead cycle, all nodes are available or can be made.
 
     Algorithm: nodes that can be made are removed from each strongly connected component. The rest of the
-    component falls into components of its own. Such a component is a dead cycle if it needs no other one.
+    component falls into components of its own. Such a component is a dead cycle if it needs no node of
+    another one.
     """
     inputs = [frozenset(nodes) for nodes in network.inputs]
     made = [
@@ -108,11 +108,11 @@ def _dead_nodes(network: Network, made: list[tuple[int, ...]], component: dict[i
 def _shortest_cycle(
     network: Network, made: list[tuple[int, ...]], nodes: frozenset[int], producers: list[int]
 ) -> DeadCycle:
-    """Return the dead cycle of strongly connected ``nodes``, with a shortest cycle through one as its steps.
+    """Return the dead cycle of ``nodes``, which are strongly connected; its steps are a shortest cycle.
 
     ``producers`` are the units that make a node of the set, in rising order. The cycle is found by
-    breadth-first search from the first input of the first producer that is in the set. ``made`` has for each
-    unit the nodes that it makes and does not need.
+    breadth-first search from an input of the first producer. ``made`` has for each unit the nodes that it
+    makes and does not need.
     """
     consumers: dict[int, list[int]] = {}
     for unit in producers:

@@ -25,7 +25,7 @@ def node_at_level(node: ObjectNode, level: int) -> ObjectNode:
 
 
 def unit_at_level(unit: FunctionalUnit, level: int) -> FunctionalUnit:
-    """Return a unit whose nodes are reduced to a level; equal nodes of one side are then listed once.
+    """Return a unit whose nodes are reduced to a level; nodes that become equal on one side are merged.
 
     At level 3, return it unchanged.
     """

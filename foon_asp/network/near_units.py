@@ -31,8 +31,8 @@ class UnitDifference(NamedTuple):
     def is_slip(self) -> bool:
         """Whether one of the two texts may be a typing error, since they are spelled almost alike.
 
-        They are if they differ by one letter, or only in doubled letters, capitals, blanks and punctuation.
-        An empty text is like no other.
+        Texts are spelled almost alike if they differ by one letter, or only in doubled letters, capitals,
+        blanks and punctuation. An empty text is like no other.
         """
         return bool(self.left and self.right) and (
             one_letter_apart(self.left, self.right)
@@ -51,9 +51,9 @@ class NearUnits(NamedTuple):
 def unit_differences(left: FunctionalUnit, right: FunctionalUnit) -> tuple[UnitDifference, ...]:
     """Return the differences of two units, each once.
 
-    Nodes that only one unit has are paired greedily with nodes of the same side of the other unit, those with
-    the fewest differences first. Paired nodes have the same label or at most two differences. A node without
-    a partner is a difference as a whole. A different label is not listed again as a container or an
+    Each node that only one unit has is paired with a node on the same side of the other unit. Pairs with the
+    fewest differences are made first. Paired nodes have the same label or at most two differences. A node
+    without a partner is a difference as a whole. A different label is not listed again as a container or an
     ingredient.
     """
     differences: list[UnitDifference] = []
@@ -108,7 +108,7 @@ def unit_differences(left: FunctionalUnit, right: FunctionalUnit) -> tuple[UnitD
 
 
 def nearest_units(left: Iterable[FunctionalUnit], right: Iterable[FunctionalUnit]) -> list[NearUnits]:
-    """Return pairs of equal or nearly equal units, one of each list, those with the fewest differences first.
+    """Return pairs of equal or nearly equal units, one from each list; the fewest differences come first.
 
     Each unit is in at most one pair. The units of a pair have at most three differences, and more than half
     of their features in common (:func:`_features`). The right one is among the candidates for the left one
@@ -136,7 +136,7 @@ def nearest_units(left: Iterable[FunctionalUnit], right: Iterable[FunctionalUnit
 def units_with_one_difference(units: Iterable[FunctionalUnit]) -> list[NearUnits]:
     """Return the pairs of units in one list that have a single difference, which may be a mistake.
 
-    It is a difference of motion, state or relation, or of two names that are spelled almost alike. Quite
+    The difference is in motion, state or relation, or between two names that are spelled almost alike. Quite
     different labels are taken to be intended. Both units have equally many inputs and equally many outputs.
     The later unit is among the candidates for the earlier one (:func:`_candidate_indices`).
     """
@@ -201,7 +201,7 @@ def _mostly_agree(left: FunctionalUnit, right: FunctionalUnit) -> bool:
 
 
 def _features(unit: FunctionalUnit) -> Iterator[object]:
-    """Yield the features of a unit: its motion, and each name in a node with side and label of the node."""
+    """Yield the features of a unit: its motion, and each name in its nodes with the node's side and label."""
     yield unit.motion
     for side, nodes in enumerate((unit.inputs, unit.outputs)):
         for node in nodes:
@@ -221,8 +221,8 @@ def _named_parts(node: ObjectNode) -> list[_NodePart]:
 def _node_differences(node: ObjectNode, other: ObjectNode) -> tuple[UnitDifference, ...]:
     """Return the differences of two nodes.
 
-    Different names of one kind are paired in alphabetical order if both nodes have equally many. Otherwise
-    each of them is a difference with an empty text on the other side.
+    If both nodes have equally many different names of a kind, these are paired in alphabetical order.
+    Otherwise, each different name is a difference with an empty text on the other side.
     """
     parts, other_parts = Counter(_named_parts(node)), Counter(_named_parts(other))
     differences = []

@@ -24,10 +24,10 @@ _Value = TypeVar("_Value")
 class Network:
     """An immutable directed hypergraph of object nodes and functional units.
 
-    Nodes and units are numbered from 0 in the order in which they were first read; these numbers are the ids
-    in facts, answers and messages. ``objects`` are the nodes; ``motions[u]`` is the motion of unit ``u``,
-    ``inputs[u]`` and ``outputs[u]`` are node ids, and ``sources[u]`` lists where each copy of it was read. A
-    :class:`NetworkBuilder` makes networks.
+    Nodes and units are numbered from 0 in the order in which they were first read. These numbers are the ids
+    in facts, answers and messages. ``objects`` are the nodes. ``motions[u]`` is the motion of unit ``u``;
+    ``inputs[u]`` and ``outputs[u]`` are node ids; ``sources[u]`` lists where each copy of the unit was read.
+    A :class:`NetworkBuilder` makes networks.
 
     A network below ``level`` 3 was made from a network of level 3, which is ``detailed``. Unit ``u`` stands
     for the detailed units with the ids ``stands_for[u]``, and node ``o`` for the detailed nodes with the ids
@@ -152,7 +152,7 @@ class Network:
         return self.unit_numbers[unit_id] if self.unit_numbers else unit_id
 
     def unit_of_number(self, number: int) -> int | None:
-        """Return the id that a unit of the whole network has in this one, or ``None`` if it is not in it.
+        """Return the id that a unit of the whole network has in this one, or ``None`` if this one lacks it.
 
         Parameters:
             number: The id of the unit in the whole network.
@@ -228,7 +228,7 @@ class Network:
         """Return this network with some units a second time, after all others.
 
         Only the ids distinguish a copy from its unit; :meth:`unit_id` returns the id of the unit. If there
-        are ``unit_numbers``, those of the copies follow the last one.
+        are ``unit_numbers``, the copies get the numbers after the last one.
 
         Parameters:
             units: The ids of the units to copy, in the order of the copies.

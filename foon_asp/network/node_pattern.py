@@ -18,8 +18,8 @@ class NodePattern(NamedTuple):
     A node matches if it has the ``label``, exactly the ``states``, and exactly the ``ingredients``, a sorted
     multiset. If the pattern has ``contents``, the words for the ingredients have to agree, too.
 
-    With a ``container``, the node needs a relation to this object, by any word, and at least the
-    ``relations``. Without a container, it needs exactly the ``relations``.
+    If the pattern has a ``container``, the node needs a relation to this object, by any word. It also needs
+    the ``relations``, and may have others. Without a container, it has to have exactly the ``relations``.
     """
 
     label: str

@@ -24,14 +24,14 @@ class Slip(NamedTuple):
 
 
 def slip_between(node: ObjectNode, other: ObjectNode | NodePattern) -> Slip | None:
-    """Return the name in which two nodes differ if it is the only one and its spellings are one edit apart.
+    """Return the name in which two nodes differ, if it is the only one and its spellings are one edit apart.
 
     Otherwise return ``None``. An edit adds, omits or changes a letter, or swaps it with the next. Differences
     in doubled letters, capitals, blanks and punctuation count as one edit together. Two relations to one
     object by different words (``in [bowl]``, ``on [bowl]``) are one edit apart, too. The words of contents
     are not compared.
 
-    If ``other`` is an entry of a kitchen or goals file without relations, only the objects of relations are
+    If ``other`` is a :class:`NodePattern` that states no relations, only the objects of relations are
     compared, as containers.
     """
     as_containers = isinstance(other, NodePattern) and not other.relations
@@ -59,7 +59,7 @@ def slip_between(node: ObjectNode, other: ObjectNode | NodePattern) -> Slip | No
 
 
 def nearest_nodes(node: ObjectNode, others: Iterable[ObjectNode], max_nodes: int) -> list[ObjectNode]:
-    """Return up to ``max_nodes`` of the ``others`` with the label of a node, most similar first.
+    """Return up to ``max_nodes`` of the ``others``: nodes with the label of ``node``, the most similar first.
 
     Nodes with the fewest different states, relations and ingredients are the most similar. The node itself is
     left out.

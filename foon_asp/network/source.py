@@ -6,8 +6,8 @@ from typing import NamedTuple
 class Source(NamedTuple):
     """The place in a ``file`` where a unit or an item was read.
 
-    ``line`` and ``column`` count from 1. ``videos`` are the addresses in the ``# Source:`` lines at the
-    top of the file, of the videos that were annotated.
+    ``line`` and ``column`` count from 1. ``videos`` are the addresses of the annotated videos, which stand in
+    lines ``# Source:`` at the top of the file.
 
     Example:
         >>> str(foon_asp.Source("recipe.txt", 12))

@@ -24,7 +24,8 @@ def without_doubles(name: str) -> str:
 def one_letter_apart(word: str, other: str) -> bool:
     """Whether two words differ by one letter added, left out or changed, or by two neighbours swapped.
 
-    Other characters do not count: ``egg 1`` and ``egg 2`` are not one letter apart. Nor are equal words.
+    Equal words are not one letter apart, and neither are ``egg 1`` and ``egg 2``, since digits are no
+    letters.
     """
     start = 0
     while start < min(len(word), len(other)) and word[start] == other[start]:

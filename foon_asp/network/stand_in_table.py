@@ -90,7 +90,7 @@ class StandInTable(NamedTuple):
 
         Parameters:
             serving: The node that is used.
-            served: The node in whose place it is used, another one.
+            served: A different node, in whose place it is used.
         """
         edits = self.differences(serving, served)
         return None if edits is None else sum((edit.price for edit in edits), Fraction(0))
@@ -102,7 +102,7 @@ class StandInTable(NamedTuple):
 
         Parameters:
             serving: The node that is used.
-            served: The node in whose place it is used, another one.
+            served: A different node, in whose place it is used.
         """
         differences: list[Difference] = []
         for edit, served_part, serving_part, price in self._node_edits(serving, served):
@@ -166,7 +166,8 @@ class StandInTable(NamedTuple):
         """Yield the edits between the contents of two nodes, each as :meth:`_node_edits` yields it.
 
         Contents with equal ingredients are one edit of the word. Otherwise each different ingredient is an
-        edit. If at most half of the ingredients are common, ``CONTENTS`` is an edit before these.
+        edit. If at most half of the ingredients are common, an edit ``CONTENTS`` comes before the edits of
+        the ingredients.
         """
         if serving.contents == served.contents:
             return

@@ -24,8 +24,9 @@ def is_starting(kitchen: object) -> bool:
 class RecipeKitchen(NamedTuple):
     """The starting kitchen of one file, as ids of object nodes.
 
-    No unit of the file makes a ``raw`` node, except units that need the node themselves. A unit of the file
-    makes each ``granted`` node, but these are assumed to be available so that all units can execute.
+    A ``raw`` node is one that no unit of the file makes, except units that need the node themselves. A
+    ``granted`` node is one that a unit makes, but that is assumed to be available so that all units can
+    execute.
     """
 
     raw: list[int]
@@ -41,8 +42,8 @@ def recipe_kitchen(
     nodes, as ``goals`` are. Inputs are not used up.
 
     Raw nodes are available. Then units execute as far as they can. When none can, the first unit in the file
-    that lacks inputs is granted these, except ``goals``. This repeats until only goals are lacking. Then
-    goals are granted in the same way, for example if two goals need each other.
+    that lacks inputs is granted what it lacks, except ``goals``. This repeats until only goals are lacking.
+    Then goals are granted in the same way, for example if two goals need each other.
     """
     unit_sides = list(units)
     missing = [len(inputs) for inputs, _ in unit_sides]  # by unit: how many inputs are not available yet
@@ -111,11 +112,11 @@ class StartingKitchen(ABC, Generic[File]):
         """Return the inputs and the outputs of each unit of a file, in its order."""
 
     def changes_for_goals(self, goals: Iterable[int]) -> tuple[frozenset[int], frozenset[int]]:
-        """Return the nodes that these goals add to the kitchen, and those that they remove from it.
+        """Return the nodes that these goals add to the kitchen, and the nodes that they remove from it.
 
-        A goal is removed if the units of one file can make it from other nodes than goals. Other nodes of the
-        file may be granted in its place. Added nodes may be in the kitchen already. Goals that are not in the
-        kitchen, or that no unit makes without needing them, change nothing.
+        A goal is removed if the units of one file can make it from nodes that are no goals. Other nodes of
+        the file may be granted in its place. Added nodes may be in the kitchen already. A goal changes
+        nothing if it is not in the kitchen, or if no unit makes it without needing it.
         """
         goals = [goal for goal in goals if goal in self.nodes and self.makers(goal)]
         kitchens = {
@@ -215,7 +216,7 @@ def starting_kitchen(network: Network) -> NetworkStartingKitchen:
 
 
 def starting_nodes(network: Network, goals: Collection[int] = ()) -> frozenset[int]:
-    """Return the ids of the nodes of the starting kitchen, as these goals change it."""
+    """Return the ids of the nodes of the starting kitchen for these goals."""
     kitchen = starting_kitchen(network)
     added, removed = kitchen.changes_for_goals(goals)
     return kitchen.nodes.union(added).difference(removed)

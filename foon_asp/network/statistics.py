@@ -16,7 +16,7 @@ MANY = 4  # units that make a node; nodes with as many or more are counted toget
 class Statistics:
     """The counts of a network at one level; every mean is over units.
 
-    ``labels``, ``motions``, ``states``, ``relations`` and ``contents`` count different ones.
+    ``labels``, ``motions``, ``states``, ``relations`` and ``contents`` are numbers of different ones.
     ``producers[n]`` is the number of object nodes that exactly ``n`` units make; its last entry counts the
     nodes that ``MANY`` or more units make. ``most_producers`` is the greatest number of units that make one
     node. ``unused`` counts the object nodes that no unit needs, and ``unchanged`` the units whose inputs are
@@ -123,8 +123,8 @@ def most_connected_labels(network: Network, max_labels: int) -> list[tuple[str, 
 def most_connected_objects(network: Network, max_nodes: int) -> list[tuple[int, int, int]]:
     """Return up to ``max_nodes`` object nodes that the most units need or make.
 
-    Each is an id, the number of units that need the node, and the number of units that make it. Nodes that
-    equally many units need or make are in order of id.
+    Each entry is the id of a node, the number of units that need it, and the number of units that make it.
+    Nodes that equally many units need or make are in order of id.
     """
     unit_counts = [
         (len({*consumers, *producers}), -node)

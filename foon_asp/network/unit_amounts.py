@@ -15,7 +15,7 @@ class UnitAmounts(NamedTuple):
     outputs: Mapping[ObjectNode, int] = MappingProxyType({})
 
     def __bool__(self) -> bool:
-        """Whether an amount is listed; those that are not are 1."""
+        """Whether any amount is listed."""
         return bool(self.inputs or self.outputs)
 
 

@@ -21,8 +21,8 @@ class UnitPrices(NamedTuple):
     def of_units(self, network: Network) -> tuple[Fraction | None, ...]:
         """Return the price of every unit of a network, in order of id; ``None`` for a unit without a price.
 
-        A unit below level 3 has the least price of the units that it stands for, or ``None`` if one of them
-        has no price.
+        The price of a unit below level 3 is the least price of the level-3 units that it stands for. It is
+        ``None`` if one of them has no price.
         """
         if network.detailed is None:
             return self._own_level_prices(network)
@@ -33,9 +33,9 @@ class UnitPrices(NamedTuple):
     def price(self, unit: FunctionalUnit, network: Network | None = None) -> Fraction | None:
         """Return the price of a unit, or ``None`` if it has none.
 
-        In a network below level 3, it is the least price of the units that the unit stands for, or ``None``
-        if one of them has no price. A unit that is not in the network has the price of its motion. Without a
-        network, the unit is taken to be of level 3.
+        In a network below level 3, it is the least price of the level-3 units that the unit stands for, and
+        ``None`` if one of them has no price. A unit that is not in the network has the price of its motion.
+        Without a network, the unit is taken to be of level 3.
         """
         if network is None or network.detailed is None:
             return self.units.get(unit, self.motions.get(unit.motion))
@@ -47,7 +47,7 @@ class UnitPrices(NamedTuple):
         )
 
     def _own_level_prices(self, network: Network) -> tuple[Fraction | None, ...]:
-        """Return the price of each unit of a network as if this were of level 3; ``None`` if it has none."""
+        """Return the price of every unit of a network of any level; ``None`` for a unit without a price."""
         priced_motions = {unit.motion for unit in self.units}  # spares looking up units of other motions
         return tuple(
             self.price(network.unit(unit)) if motion in priced_motions else self.motions.get(motion)

@@ -63,13 +63,14 @@ class Offer(NamedTuple):
     def raised_error(self, exception: Raised) -> UserError:
         """Return an error that says that the function of the offer raised an exception.
 
-        It has the message alone of a :class:`UserError`, and class, message and place of other exceptions.
+        For a :class:`UserError`, the text has its message alone. For any other exception, the text also has
+        its class and its place.
         """
         is_user_error = f"{UserError.__module__}.{UserError.__name__}" in exception.classes
         return self.fault(exception.message if is_user_error else exception.text, exception.trace)
 
     def tree_of_reply(self, reply: object, unit_count: int) -> tuple[int, ...]:
-        """Return a reply of the function, which has to be a list of ids of units, as a tuple.
+        """Return a reply of the function as a tuple; it has to be a list of unit ids.
 
         Raises :class:`UserError` for anything but a list of different numbers from 0 to ``unit_count`` - 1.
         """
@@ -87,7 +88,7 @@ def find_offers(group: str) -> list[Offer]:
     """Return the offers of installed packages in a group, sorted by package and name; none is imported.
 
     Of a package that is installed twice, only the first installation on Python's path counts. Raises
-    :class:`UserError` if a package mentions the group, and its entry points cannot be read.
+    :class:`UserError` if a package mentions the group but its entry points cannot be read.
     """
     from importlib import metadata  # noqa: PLC0415 (slow to import, and seldom needed)
 

@@ -50,8 +50,8 @@ def _start_worker() -> Worker:
 def _read_message(pipe: RawIOBase, max_bytes: int = 64 * 2**20) -> tuple[str, bytes]:
     """Read the next line of a pipe, and return ``"line"`` and its bytes.
 
-    A line of more than ``max_bytes`` would fill the memory: return ``"endless"`` without bytes. A tree of a
-    million units takes some megabytes. Raises ``EOFError`` if the pipe ends before the line does.
+    For a line of more than ``max_bytes``, which would fill the memory, return ``"endless"`` without bytes.
+    Raises ``EOFError`` if the pipe ends before the line does.
     """
     line = bytearray()
     while not line.endswith(b"\n"):

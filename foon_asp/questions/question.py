@@ -58,9 +58,9 @@ class Role(Flag):
 class Option(NamedTuple):
     """An option of a question, for the command line and Python, as plain data.
 
-    In the annotation of a parameter (``Annotated[int, Option(...)]``), an option without a name takes its
-    name and default from the parameter. Without ``help``, it takes the first sentence of the parameter's
-    entry in the docstring.
+    An option may be in the annotation of a parameter (``Annotated[int, Option(...)]``). If it has no name, it
+    takes its name and default from the parameter. Without ``help``, it takes the first sentence of the
+    parameter's entry in the docstring.
 
     ``name``: the name of the parameter.
     ``help``: the description on the command line and in Python.
@@ -70,7 +70,7 @@ class Option(NamedTuple):
     ``flags``: the flags of the command line; by default ``--name`` with dashes for underscores.
     ``many``: whether it may be repeated.
     ``metavar``: the word for the value in help; by default the word of its type, and ``FILE`` for a file.
-    ``choices``: the values allowed; a function that lists them, if other packages may add some.
+    ``choices``: the values allowed, or a function that lists them if other packages may add some.
     ``least``: the smallest number allowed.
     ``positional``: whether it has no flag; it must then be given, unless it may be repeated.
     ``optional``: whether it may be left out although it is positional.
@@ -100,8 +100,8 @@ class Question:
     ``formats``: the formats of the result, the default first.
     ``suffixes``: the format that each ending of a file name stands for; empty if no file can be written.
     ``pose``: a function from the options of the problem to the first arguments of the question.
-    ``command``: the function that a command calls with all options. It is not the question itself if a
-    command has more options, or answers where Python raises an exception.
+    ``command``: the function that a command calls with all options. This is usually the question itself.
+    It is another function if the command has more options, or answers where Python raises an exception.
     """
 
     def __init__(
@@ -140,10 +140,10 @@ def question(
 ) -> Callable[[Callable[P, R]], Callable[P, R]]:
     """Return a decorator that wraps a function for Python, and describes it for a command line.
 
-    The description is a :class:`Question`, which :func:`question_of` returns; the arguments are its fields.
-    Its options are ``options``, and after them those in the annotations of the function's parameters. The
-    question supports items that are used up if it has an option for them, or if ``used_up`` says so.
-    Otherwise, it raises :class:`UserError` for a problem with such items.
+    The description is a :class:`Question`, which :func:`question_of` returns; the arguments become its
+    fields. Its options are ``options``, followed by the options in the annotations of the function's
+    parameters. The question supports items that are used up if it has an option for them, or if ``used_up``
+    says so. Otherwise, it raises :class:`UserError` for a problem with such items.
     """
 
     def decorate(ask: Callable[P, R]) -> Callable[P, R]:
@@ -163,7 +163,7 @@ def question(
 
 
 def python_question(ask: Callable[P, T], options: Sequence[Option] | None = None) -> Callable[P, T]:
-    """Return a function that also takes a path or data for a problem, with a complete docstring.
+    """Return a function that takes a problem, or a path or data in place of it; its docstring is completed.
 
     ``options`` describe the parameters in the docstring; by default, these are the options in the
     annotations. A command line needs :func:`question` instead.

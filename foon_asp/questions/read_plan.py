@@ -64,9 +64,9 @@ class PlanRead(Checked, frozen=True, kw_only=True, tag=schema_name("read-plan"))
 def _pose_from_map(command: Command, names: Path | None) -> tuple[Problem]:
     """Return the problem that a name map states, over the data of the command.
 
-    The map has the goals, the container rule, and how items are used up. Raises :class:`UserError` without a
-    map, for a map of another level than the data, and if the command names no data and the map is not of the
-    bundled kitchen. A map is of this kitchen if the kitchen has at least half of its units.
+    The map, which ``foon-asp export`` wrote, has the goals, the container rule, and how items are used up. If
+    the command names no data, the bundled kitchen is used; it has to have at least half of the units of the
+    map. Raises :class:`UserError` without a map, and for a map of another level than the data.
     """
     if names is None:
         raise UserError(

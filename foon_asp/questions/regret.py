@@ -130,7 +130,7 @@ class Regrets(WithAnswer, frozen=True, kw_only=True, tag=schema_name("regret")):
 
     @property
     def ending(self) -> Ending:
-        """The ending of the best tree; ``LIMIT`` if the optimum without some part is not proved."""
+        """The ending of ``answer``; ``LIMIT`` if the optimum without some part is not proved."""
         proved = all(regret.status in {Status.OPTIMAL, Status.INFEASIBLE} for regret in self.regrets)
         return self.answer.ending if proved else Ending.LIMIT
 
@@ -183,7 +183,7 @@ def regret(
         units: A unit to ask about as well, by its id.
         motions: A motion to ask about as well, the optimum without all of its units.
         pairs: Ask about pairs of kitchen items as well. The best tree takes both items
-            of a pair, and for each of them there is a tree without this item alone.
+            of a pair. If only one of the two is left out, there is still a tree.
 
     Returns:
         The best tree as the ``answer``, and the ``regrets``, of which the greatest loss comes first.
@@ -217,9 +217,10 @@ def regret(
     def solve_without(leave_out: Callable[[], Problem], **parts: Any) -> Regret:
         """Solve the problem that ``leave_out`` returns; append its regret to ``regrets``, and return it.
 
-        ``parts`` name what is left out, as parameters of :func:`_regret_of_parts`. Without rules, raises
-        :class:`BugError` if the optimum is better without the part. This is not checked by ``kitchen``
-        without an item. If a limit or ctrl-C stops ``leave_out``, the status of the regret is ``UNKNOWN``.
+        ``parts`` name what is left out, as parameters of :func:`_regret_of_parts`. If a limit or ctrl-C stops
+        ``leave_out``, the status of the regret is ``UNKNOWN``. Without rules, raises :class:`BugError` if the
+        optimum is better without the part. By ``kitchen``, the optimum may be better without an item, which
+        is no bug.
         """
         try:
             with settings.effective_deadline.watched(
@@ -253,10 +254,9 @@ def regret(
 
 
 def regret_of(best: Answer, settings: Settings, unit: int | None = None, item: int | None = None) -> Regret:
-    """Return the regret of one unit or one kitchen item, which is given by id.
+    """Return the regret of a unit or of a kitchen item; give the id of one of the two.
 
-    The problem of the answer ``best`` is solved without it. Progress and warnings are not reported. Give
-    either the unit or the item.
+    The problem of the answer ``best`` is solved without it. Progress and warnings are not reported.
     """
     network, outcome = best.problem.network, best.outcome
     if unit is not None:
@@ -290,8 +290,7 @@ def _regret_of_parts(
 def _loss_by(best: Costs, remaining: Costs, objective: Objective) -> int | Fraction:
     """Return by how much the remaining costs are worse by an objective.
 
-    It is a difference; for ``success`` it is the share of the best rate that is lost, and 0 if that rate is
-    0.
+    It is a difference; for ``success``, the share of the best rate that is lost, or 0 if the best rate is 0.
     """
     best_figure, figure = best.measure(objective), remaining.measure(objective)
     if multiplies(objective):

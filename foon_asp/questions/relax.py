@@ -247,7 +247,7 @@ def solve_relaxation(task: StripsTask, deadline: Deadline) -> Relaxed:
 
 
 class _StopWhenProved(Reporter):
-    """A reporter that ends the search by its deadline once the incumbent's cost equals the lower bound.
+    """A reporter that ends the search once the cost of the incumbent equals the lower bound.
 
     It forwards only trees and bounds to another reporter.
     """
@@ -279,16 +279,16 @@ class _StopWhenProved(Reporter):
     def _stop_if_proved(self) -> None:
         """End the search if the incumbent costs as much as the lower bound.
 
-        By ``units``, the search ends without that, since there is no second objective.
+        By ``units``, this does nothing: the search ends by itself, since there is no second objective.
         """
         if self._objective is not Objective.UNITS and None is not self._cost == self._lower_bound:
             self._deadline.stop_at_proof()
 
 
 def _find_certificate(relaxed: Relaxed, deadline: Deadline) -> "Certificate | None":
-    """Return a certificate of the cost, or that no plan exists.
+    """Return a certificate that the plan is the cheapest, or that no plan exists.
 
-    Return ``None`` if neither is proved, if no certificate is found, and when a limit or ctrl-C stops the
+    Return ``None`` if neither is proved or no certificate is found, and if a limit or ctrl-C stops the
     search.
     """
     from foon_asp.certificate import certify, certify_infeasible  # noqa: PLC0415 (slow to import)

@@ -156,8 +156,8 @@ def repair(
         The repair, with its ``stand_ins``, ``added`` steps and the repaired ``tree``.
 
     Raises:
-        UserError: if the file cannot be read, for a problem in which items are used up, for constraints or
-            encodings, or for a certificate about units that the network does not have.
+        UserError: if the file cannot be read, if items are used up, if there are constraints or encodings, or
+            if a certificate is wanted and the network lacks a unit of the tree.
 
     Example:
         >>> problem = foon_asp.load().problem("ice")
@@ -217,12 +217,11 @@ def repair(
 def _certify_repair(
     needed: Repair, outcome: Outcome, settings: Settings
 ) -> tuple[Outcome, Certificate | None]:
-    """Return the outcome of a repair, and a certificate that no tree with all steps of the repair is better.
+    """Return the outcome of a repair, and a certificate that it is the cheapest or that no repair exists.
 
-    If the certificate covers all objectives, it is the proof of the outcome. The certificate is ``None`` if
-    the repair is not proved, or if none is found in time. Raises :class:`BugError` if a better tree exists.
-    If no repair exists, the certificate proves this. A certificate of a bound alone leaves the outcome as it
-    is.
+    The certificate is ``None`` if nothing is proved, or if it is not found in time. If it covers all
+    objectives, it becomes the proof of the outcome. If it proves only a bound, the outcome is unchanged.
+    Raises :class:`BugError` if a better tree exists.
     """
     covered = Coverage(({"rule": ALL_STEPS, "units": sorted(needed.steps)},))
     deadline, problem, certificate = settings.effective_deadline, needed.shown, None

@@ -72,8 +72,9 @@ class RobotPlan(AboutGoals, frozen=True, kw_only=True, tag=schema_name("steps"))
     def behaviour_tree(self) -> str:
         """Return the plan as a behaviour tree: XML of BehaviorTree.CPP 4.
 
-        Without ``branches``, the tree fails with the first failed execution. If the first objective is
-        ``attempts``, or where items are used up, failed steps are tried again without end.
+        Where items are used up, failed steps are tried again without end. Without ``branches``, they are also
+        tried again without end if the first objective is ``attempts``; otherwise the tree fails with the
+        first failure.
         """
         endless = self.objectives[:1] == (Objective.ATTEMPTS,)
         branches = self.branches or (Branch(-1 if endless else 1, self.robot_steps),)

@@ -190,9 +190,9 @@ class WrittenDurations(Result, frozen=True, kw_only=True, tag=schema_name("durat
 def _schedule_or_template(
     problem: Problem, plan: Tree, *, durations_template: Path | None = None, **options: Any
 ) -> Result:
-    """Return the schedule; with ``durations_template``, only write that file of durations to be filled in.
+    """Return the schedule; with ``durations_template``, only write this file of durations to be filled in.
 
-    Durations that are known are in the file already. Raises :class:`UserError` if the file exists.
+    Known durations are filled in already. Raises :class:`UserError` if the file exists.
     """
     if durations_template is None:
         return schedule(problem, plan, **options)
@@ -391,8 +391,8 @@ def _status_of(solution: BestSchedule) -> Status:
 def _executable_tree(tree: Tree) -> Tree:
     """Return a tree in an order that executes.
 
-    If no order executes, the tree is returned in the listed order where items last. Where they are used up,
-    raises :class:`NoTreeError`.
+    If no order executes where items last, the listed order is kept. If no order executes where items are used
+    up, raises :class:`NoTreeError`.
     """
     if tree.problem.items is None:
         simulation = simulate_for(tree.problem, tree)
@@ -480,8 +480,8 @@ def _known_durations(
 def _tool_counts(stated: Tools | None) -> dict[ToolName, int | None]:
     """Return the stated numbers of tools by label or node; ``None`` for an unlimited number.
 
-    They are read from a file, or checked. Raises :class:`UserError` for a wrong number or label. If
-    ``stated`` is ``None``, the result is empty.
+    ``stated`` is the path of a file to read, or numbers to check. If it is ``None``, the result is empty.
+    Raises :class:`UserError` for a wrong number or label.
     """
     if stated is None:
         return {}

@@ -36,14 +36,14 @@ class Retrieved(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("
     Attributes:
         search: The name of the search.
         package: The package that offers the search; null for a built-in search.
-        ended: How the search ended: with a tree, stuck at an object that cannot be had, having shown that no
-            tree executes, or at a limit.
+        ended: How the search ended: with a tree, stuck at an object that cannot be had, with the proof that
+            no tree executes, or at a limit.
         stuck_at: The object that cannot be had, if the search was stuck; else null.
         verdict: Whether the tree executes; null without a tree.
         as_listed: What stops the tree in the order listed, if anything.
         in_any_order: What stops every order, if anything.
-        order: Positions of steps, from 1, in an order in which they run: all steps if the tree executes, else
-            at most those that can run. Null without a tree.
+        order: Positions of steps, from 1, in an order in which they run. If the tree does not execute, steps
+            may be missing. Null without a tree.
         used_up: Whether the tree, each step done once, runs where items are used up; null without a tree, and
             where items are used up anyway.
         costs: What the tree costs by every objective; null without a tree.

@@ -31,12 +31,12 @@ Direction = Literal["below", "above"]
 
 
 class FlipRate(Value, frozen=True):
-    """The rate at which another tree is as good.
+    """The rate of a motion at which another tree is as good as the best one.
 
     Attributes:
         root: The degree of the root that the rate is: 2 for the square root of ``of``.
         of: The exact rational number whose root the rate is, as text.
-        inwards: The rate, rounded to a decimal within the interval.
+        inwards: The rate as a decimal, rounded so that it lies within the interval.
         change: The relative change of the rate, as text in percent.
     """
 
@@ -47,7 +47,7 @@ class FlipRate(Value, frozen=True):
 
 
 class TreeBeyond(CostedTree, frozen=True):
-    """The tree that is the best beyond an end of an interval, with its costs at the given rates.
+    """The best tree if a rate lies beyond the end of its interval, with the costs at the given rates.
 
     Attributes:
         gone: The ids of the units that the best tree has and this tree lacks.
@@ -73,7 +73,7 @@ class RateEnd(Value, frozen=True):
 
 
 class RateInterval(Value, frozen=True):
-    """The interval of rates of one motion in which the best tree stays the best; other rates do not change.
+    """The rates of one motion at which the best tree stays the best, while other rates do not change.
 
     Attributes:
         rate: The rate that is given.
@@ -103,7 +103,7 @@ class RateInterval(Value, frozen=True):
 
 
 class FirstFlip(Value, frozen=True):
-    """The motion, and the end of its interval, with the smallest relative change of the rate."""
+    """The motion whose rate has to change least for another best tree, and that end of its interval."""
 
     motion: str
     side: Direction
@@ -134,7 +134,7 @@ class Sensitivity(WithAnswer, frozen=True, kw_only=True, tag=schema_name("sensit
 
     @property
     def ending(self) -> Ending:
-        """The ending of the best tree; ``LIMIT`` if an end of an interval is not proved."""
+        """The ending of ``answer``; ``LIMIT`` if an end of an interval is not proved."""
         proved = all(interval.proved for interval in self.intervals)
         return self.answer.ending if proved else Ending.LIMIT
 
@@ -168,7 +168,8 @@ class Sensitivity(WithAnswer, frozen=True, kw_only=True, tag=schema_name("sensit
     def _cells(self, interval: RateInterval) -> tuple[str, ...]:
         """Return the row of a motion: rate, both ends of the interval, name, and the trees beyond them.
 
-        An end that is not proved has a question mark. An end that no rate forms is 0 or 1.
+        An end that is not proved has a question mark. If no rate on a side makes another tree better, the end
+        is 0 or 1.
         """
         best, ends, beyond = self.answer.units or (), [], []
         for end, limit in ((interval.below, "0"), (interval.above, "1")):

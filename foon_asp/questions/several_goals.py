@@ -13,7 +13,7 @@ from foon_asp.results.values_of import node_of, nodes_of
 
 
 class GoalsApartTuning(NamedTuple):
-    """The limit up to which the goals of a tree are also solved one by one.
+    """The limit of how many goals of a tree are also solved one by one.
 
     ``goals``: the greatest number of goals. Each goal takes one more search and one more line; for more goals
     there is the option ``--all-goals``.
@@ -51,7 +51,7 @@ def _solve_apart(answer: Answer, settings: Settings, posed: Problem) -> list[Out
     """Return the best outcome for each goal by itself, in the order of the goals.
 
     Without rules, raises :class:`BugError` if one goal alone costs more than all goals together. ``posed`` is
-    that of :func:`with_goals_apart`. Nothing is reported to the caller.
+    the problem that was asked about. Nothing is reported to the caller.
     """
     together, problem, objectives = answer.outcome, answer.problem, answer.objectives
     if isinstance(posed, NearbyProblem):

@@ -97,9 +97,10 @@ class Shopping(WithAnswer, frozen=True, kw_only=True, tag=schema_name("shopping-
     """Lists of things to add to the kitchen, and the best tree with the first list.
 
     Attributes:
-        offer: The nodes that could be bought. With a price list: those with a price (priced). Without one,
-            the first set in this list that is enough: those for sale (for sale), also nodes of a cycle that
-            feeds only itself (cycle), all but the dish (processed), all but the goals (dish), or all (goal).
+        offer: The nodes that could be bought: those on the price list (priced) or, without one, the first set
+            from which the goals can be made. The sets are: raw nodes, unprocessed nodes, tools and vessels
+            (for sale); also nodes of a cycle that feeds only itself (cycle); all but the dish (processed);
+            all but the goals (dish); all (goal).
         lists: The lists, the cheapest first. Of lists with one price and number of items, those with the
             fewest mixtures and made things come first, then that with the best tree. Empty if no list helps.
         complete: Whether it is proved that there are no more lists.
@@ -191,7 +192,7 @@ class Shopping(WithAnswer, frozen=True, kw_only=True, tag=schema_name("shopping-
         )
 
     def _price_text(self, bought: ShoppingList) -> str:
-        """Return the number of items of a list in words, with the copies and the price where they count."""
+        """Return in words the number of items of a list; copies and price follow if they matter."""
         items = counted(len(bought.items), "object node")
         if self.items != "lasting":
             copies = sum(item.copies for item in bought.items if item.copies is not UNSET)
@@ -236,17 +237,16 @@ def shopping_list(
 ) -> Shopping:
     """Find the fewest or cheapest object nodes to add to the kitchen so that a task tree or plan exists.
 
-    Where items are used up, a list has the number of copies of each, and a further list lacks some object
-    node of every earlier one. Every list is proved: there is no shorter or cheaper one, except those that
-    contain all of an earlier list. Among lists of the same cost, one with fewer things comes first, then one
-    with fewer mixtures and objects that units make, then one with a better tree. If a limit
-    stops the search for these trees, the lists stay in the order in which they were found. All of a store is
-    read.
+    Where items are used up, a list has the number of copies of each node. A further list lacks some node of
+    every earlier list. Every list is proved: there is no shorter or cheaper one, except those that contain
+    all items of an earlier list. Among lists of the same cost, one with fewer things comes first, then one
+    with fewer mixtures and objects that units make, then one with a better tree. If a limit stops the search
+    for these trees, the lists stay in the order in which they were found. All of a store is read.
 
     Parameters:
         prices: A price list: lines of an object node, a tab and a price; only what has a price can be bought.
             In Python also prices by name. A label stands for all its nodes that would be for sale. Without
-            prices, every node counts one.
+            prices, every node costs 1.
         lists: How many lists to find, at most.
 
     Returns:
@@ -397,8 +397,8 @@ class _Lists(NamedTuple):
 def _with_bought_items(problem: Problem, bought: Mapping[int, int]) -> Problem:
     """Return the problem with bought items in its kitchen; ``bought`` has the copies by id of the node.
 
-    Where items are used up, the copies are added to the stock. The stock that is stated of a node outside the
-    kitchen does not count.
+    Where items are used up, the copies are added to the stock. A stock stated of a node outside the kitchen
+    is ignored.
     """
     kitchen = problem.kitchen.union(bought)
     if problem.items is None:
@@ -505,9 +505,10 @@ def _lists_without_copies(
 ) -> _Lists:
     """Return the cheapest lists of ``wares``, which are prices by id of the node, where items last.
 
-    Without rules, :class:`_Shopper` finds them. Under rules, clingo does; if ``objectives`` are more than
-    ``units``, further lists of the same price are returned, for the caller to compare. There is no list if
-    the goals cannot be made even with all wares; this is proved unless a limit came first.
+    Without rules, :class:`_Shopper` finds the lists, and under rules clingo. If there are rules and
+    ``objectives`` beside ``units``, the result has further lists of the same price, for the caller to
+    compare. If the goals cannot be made even with all wares, there is no list. This is proved unless a limit
+    came first.
     """
     if prepared.tree is None:
         return _Lists([], complete=not prepared.stopped)
@@ -548,7 +549,7 @@ class _Shopper:
         self._solved = SolvedGoals()
 
     def lists(self, max_lists: int) -> _Lists:
-        """Return up to ``max_lists`` lists, the cheapest first; at a limit, those found by then.
+        """Return up to ``max_lists`` lists, the cheapest first; at a limit, the lists found so far.
 
         If nothing has to be bought, the only list is empty. If ``max_lists`` lists are found, others are not
         ruled out, so the lists are not complete.
@@ -568,9 +569,9 @@ class _Shopper:
     def _search_without(self, left_out: frozenset[int], reporter: Reporter) -> bool:
         """Add the best list without the wares ``left_out`` to the queue; return false at a limit.
 
-        Nothing is done if the set was searched before. An earlier list without any ware in ``left_out`` may
-        be the best one again. In that case, the search is done for each item of the earlier list, which is
-        left out as well. At a limit without any list yet, the best list found is kept, unproved.
+        Nothing is done if the set was searched before. If an earlier list has no ware in ``left_out``, it may
+        be the best one again. So each item of this list is left out in turn, in addition to ``left_out``. If
+        a limit comes before any list was proved, the best list found is kept, unproved.
         """
         if left_out in self._seen:
             return True
@@ -631,10 +632,10 @@ def _lists_under_rules(
     """Return the cheapest lists of ``sold`` wares under rules, by one run of clingo for each list.
 
     ``sold`` are prices by id of the node. Of equally cheap lists, clingo prefers those without
-    ``second_choices``, which are mixtures and nodes that units make. With ``compared``, further lists that
-    cost as much as list number ``max_lists`` are returned, up to 30 in all: the caller chooses among them by
-    their trees. Raises :class:`UserError` for prices beyond 32 bits. An empty list ends the search, since
-    nothing has to be bought.
+    ``second_choices``, which are mixtures and nodes that units make. An empty list is the last one, since
+    nothing has to be bought. With ``compared``, there are up to 30 lists: further lists have the price of
+    list number ``max_lists``, and the caller chooses by the trees. Raises :class:`UserError` for prices
+    beyond 32 bits.
     """
     scale = math.lcm(*(price.denominator for price in sold.values()))
     if any(price * scale > INT32_MAX for price in sold.values()):

@@ -152,12 +152,12 @@ def solve(
         reductions: What reduces the network before the search: ``all``, ``none``, ``safe`` (all that keep
             every optimal tree), or names of reductions separated by commas.
         certificate: The path of a file to write a certificate to: a proof of the answer that
-            :func:`foon_asp.verify` checks without a solver. It is about the whole network. Without
-            rules, only the part that the proof touches is read of a store; the certificate then names the
-            digests that the store states. Where items are used up, the certificate has a lower bound on the
-            cost of every plan, and a plan. If the plan costs more, it claims only a ``bound``.
+            :func:`foon_asp.verify` checks without a solver. It is about the whole network. If
+            there are no rules, only the part of a store that the proof touches is read; the certificate then
+            names the digests that the store states. Where items are used up, the certificate has a plan, and
+            a lower bound on the cost of every plan. If the plan costs more, it claims only a ``bound``.
         cross_check: Also ask other engines: bare clingo, HiGHS, Fast Downward and those of packages, if
-            installed. Each has its part of what is left of the ``time_limit``, or a minute without one.
+            installed. They share what is left of the ``time_limit``; without one, each has a minute.
         skip_unreachable: Leave out goals that cannot be made from the kitchen, and list each with its cause.
             Constraints are not looked at for that. If no goal can be made, none is left out.
         clingo_options: Options to pass to clingo, for example ``["--opt-strategy=bb"]``.

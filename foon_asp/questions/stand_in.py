@@ -43,7 +43,7 @@ class StandIn(Value, frozen=True):
     """One node that is used in place of another.
 
     Attributes:
-        unit: The id of the unit that is the stand-in in the network.
+        unit: The id of a unit of the network that stands for this replacement.
         used: The node that is used.
         stands_in_for: The node in whose place it is used.
         dissimilarity: What it costs by the table of stand-ins: the sum of the prices of ``edits``.

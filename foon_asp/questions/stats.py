@@ -74,7 +74,7 @@ class StartingNodes(Value, frozen=True):
     Attributes:
         files: How many files of recipes there are.
         not_made: The nodes that no unit makes from other nodes.
-        made_too: The nodes that a unit makes, but without which the units of some file cannot run.
+        made_too: The nodes that a unit makes, and that the units of some file need at the beginning.
     """
 
     files: int
@@ -237,7 +237,10 @@ class ListedUnits(Result, frozen=True, kw_only=True, tag=schema_name("units")):
     units: tuple[ExplainedUnit, ...]
 
     def show(self) -> Iterator[Block]:
-        """Return a line for each unit; on request, also its inputs, with why they stay, and its outputs."""
+        """Return a line for each unit; on request, lines for its inputs and outputs follow.
+
+        The line of an input says why it stays or is used up.
+        """
         for unit in self.units:
             yield from step_lines([unit])
             explained = [node for node in unit.inputs if node.why is not UNSET]
@@ -294,8 +297,8 @@ def stats(
         ``explain_items`` or ``stays``, each of their inputs says whether it stays.
 
     Raises:
-        UserError: for a file that cannot be read, or a unit that the network does not have; for a name in
-            ``stays`` that the network does not have; and where inputs are to be explained below level 3.
+        UserError: for a file that cannot be read, for a unit or a name in ``stays`` that the network does not
+            have, and if inputs are to be explained below level 3.
 
     Example:
         >>> counts = foon_asp.stats(foon_asp.load())
@@ -336,8 +339,8 @@ def _explained_unit(
 ) -> ExplainedUnit:
     """Return a unit, by id, as a value.
 
-    ``items`` says how items are used up: each input then says whether it stays and why. If it is ``None``,
-    inputs say nothing of this. An input that the container rule implies stays.
+    ``items`` says how items are used up: each input then says whether it stays and why. If ``items`` is
+    ``None``, inputs say nothing of this. An input that the container rule takes as given stays.
     """
     unit_value, functional_unit = unit_of(network, unit), network.unit(unit)
     needed = set() if items is None else set(needed_inputs(functional_unit, rule, utensils, network))

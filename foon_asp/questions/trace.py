@@ -178,7 +178,8 @@ def _stated_stock(problem: Problem) -> dict[ObjectNode, int]:
 def _copies_after_steps(problem: Problem, replay: Replay) -> Iterator[dict[ObjectNode, int]]:
     """Yield the number of copies by node: before the first step, and after each step.
 
-    Nodes without a copy are left out, and so are available nodes without a stock, which never run out.
+    Nodes without a copy are left out. Available nodes without a stock are left out too, since they never run
+    out.
     """
     stock = _stated_stock(problem)
     counts = Counter({node: n for node, n in stock.items() if problem.at_hand(node)})

@@ -74,7 +74,7 @@ class Tree(TaskTree):
 
         Parameters:
             problem: The problem that the tree is for. If its network is a part of a store, the problem of the
-                tree has the units, too, unless the store lacks them.
+                tree also has those units that the store has.
             units: The units, in the order of the tree.
             places: Where each unit was read; by default its place in the network, if it has one.
         """
@@ -196,7 +196,7 @@ class Tree(TaskTree):
 def as_tree(problem: Problem, tree: str | PathLike[str] | Iterable[FunctionalUnit]) -> Tree:
     """Return a tree for a problem: read from the path of a file, or made of units.
 
-    Another tree keeps its places, and loses its claim.
+    If ``tree`` is a :class:`Tree`, its places are kept and its claim is not.
     """
     if isinstance(tree, str | PathLike):
         return Tree.read(problem, tree)
@@ -217,7 +217,7 @@ def read_listed_units(
 
 
 def read_answer(file: Path) -> ListedTree:
-    """Return the tree in a file, with the other fields if the file is an answer.
+    """Return the tree in a file; if the file is an answer, its other fields, too.
 
     Units that the file gives by id are not looked up: they stay ids. Assumptions of the reader are reported
     as warnings. Raises :class:`NoTreeError` for an answer without a tree.

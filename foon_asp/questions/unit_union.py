@@ -75,7 +75,7 @@ class UnitUnion(WithAnswer, frozen=True, kw_only=True, tag=schema_name("unit-uni
 
     @property
     def ending(self) -> Ending:
-        """The ending of the best tree; ``LIMIT`` unless everything is proved."""
+        """The ending of ``answer``; ``LIMIT`` unless everything is proved."""
         return self.answer.ending if self.complete else Ending.LIMIT
 
     def show(self) -> Iterator[Block]:

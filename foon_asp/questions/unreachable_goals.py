@@ -24,9 +24,9 @@ def without_unreachable(problem: Problem) -> tuple[Problem, tuple[SkippedGoal, .
 
 
 def _skipped_goal(problem: Problem, goal: int) -> SkippedGoal:
-    """Return an unreachable goal with its first cause, on the path to it that lacks the fewest nodes.
+    """Return an unreachable goal with a cause: the first one on the path that lacks the fewest nodes.
 
-    The result also has the number of nodes in the cycle, which is 0 if the cause is no cycle.
+    If the cause is a cycle, the result also has its number of nodes; otherwise this is 0.
     """
     root = dead_ends(replace(problem, goals=(goal,))).roots[0]
     cycle = root.cycle.nodes if root.cause is Cause.CYCLE and root.cycle else ()

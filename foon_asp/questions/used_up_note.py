@@ -33,7 +33,8 @@ def used_up_note(problem: Problem, tree: Iterable[FunctionalUnit]) -> list[str]:
 def _amount_text(problem: Problem, units: Sequence[FunctionalUnit]) -> str:
     """Return in words the first amount that concerns a tree: ``of flour in the kitchen``.
 
-    Amounts are those of its units, its items in the kitchen, and the goals. The text is empty without one.
+    The amounts are those of the tree's units, of its items in the kitchen, and of the goals. The text is
+    empty without any amount.
     """
     if problem.amounts:
         for unit in units:

@@ -60,7 +60,8 @@ class SimulationFields(TypedDict):
 def simulation_fields(tree: Tree, simulation: Simulation) -> SimulationFields:
     """Return the fields of a result from the simulation of its tree; positions in them count from 1.
 
-    Whether the tree runs with items used up is found out here; it is no part of the simulation.
+    The simulation does not say whether the tree runs with items used up: the field ``used_up`` is computed
+    here.
     """
     return {
         "verdict": simulation.verdict,
@@ -75,7 +76,7 @@ def verdict_lines(tree: Tree, simulation: Simulation) -> Iterator[str]:
     """Yield lines: the verdict, the obstacles, the costs and notes.
 
     If the network lacks units of the tree, these are listed in place of the costs. If only another order
-    executes, it comes last.
+    executes, that order comes last.
     """
     problem, verdict = tree.problem, simulation.verdict
     yield f"{verdict} ({problem.conditions})"

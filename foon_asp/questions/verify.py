@@ -79,7 +79,7 @@ class VerifiedCertificate(Result, AboutGoals, frozen=True, kw_only=True, tag=sch
         checked: In words, what clingo checked of user-defined measures and rules.
         not_covered: The constraints that the claim is not about.
         tree: The units of the tree, by id; null without a tree.
-        proved_by: In words, the number of cuts of the proof; for plans, also of nodes with a balance.
+        proved_by: In words, how many cuts the proof has; for plans, also how many nodes it has a balance of.
         used_up: In words, the stock, the copies wanted, and the items that stay, as the claim states them;
             null where items last.
         proved_checker: The answer of the checker proved in Coq: accepted, or why it did not check the
@@ -233,14 +233,14 @@ def _rule_text(rule: Rule) -> str:
 
 
 def _cost_text(objective: str, cost: int | Fraction | None) -> str:
-    """Return a cost with its objective, as ``3 units``; success also rounded."""
+    """Return a cost with its objective, as ``3 units``; success has its exact and its rounded value."""
     return f"success {cost} ≈ {float(cost or 0):.4g}" if objective == "success" else f"{cost} {objective}"
 
 
 def _pose_data_or_task(command: Command, data_paths: Sequence[Path]) -> tuple[Foon | Problem]:
-    """Return the data of the command with the files at the paths, in a tuple of one.
+    """Return the data of the command with the files at the paths, or a planning task in these files.
 
-    If a file is of a planning task, return the problem of the task instead: its delete relaxation. Raises
+    The result is a tuple of one. A planning task is returned as the problem of its delete relaxation. Raises
     :class:`UserError` for options for data beside a task.
     """
     if not any(map(_is_task, data_paths)):
@@ -386,9 +386,8 @@ def _verify_content(
     """Return the claim that a certificate, as plain values, proves about data.
 
     ``full`` reads all of a store. ``with_clingo`` checks measures and rules with clingo, and ``proved`` also
-    asks the checker proved in Coq. Raises :class:`RefusedError` for a wrong certificate, and
-    :class:`OtherDataError` for other data. A certificate is also wrong if it states other rules for a measure
-    than the data.
+    asks the checker proved in Coq. Raises :class:`OtherDataError` if the certificate is about other data.
+    Raises :class:`RefusedError` if it is wrong, or states other rules for a measure than the data.
     """
     dataset = foon.dataset
     subject = _subject_of(dataset, content, full)
@@ -421,10 +420,10 @@ def _verify_content(
 
 
 def _subject_of(dataset: Dataset, content: Any, full: bool) -> Subject:
-    """Return the data that a certificate can be about; of a store, only the part it needs unless ``full``.
+    """Return the data that a certificate can be about; unless ``full``, only the part of a store it needs.
 
-    If the data have stand-ins, or if the certificate is about a repair, the result has the stand-ins for its
-    goals. Raises :class:`RefusedError` if there are stand-ins and no goals.
+    If the data have stand-ins, or if the certificate is about a repair, stand-ins for the goals of the
+    certificate are included. Raises :class:`RefusedError` if there are stand-ins and no goals.
     """
     goals, steps = _goal_ids(content), _step_ids(content)
     if steps and dataset.stand_ins is None:  # a repair has them without being asked for
@@ -482,7 +481,8 @@ def _step_ids(content: Any) -> list[int]:
 def _needs_whole_network(content: Any) -> bool:
     """Return whether the check of a certificate looks at every unit.
 
-    This is so for a plan, rules or prices, and for what is no certificate.
+    It is true for a certificate that is about a plan, or that has rules or prices. It is also true for a
+    value that is no certificate.
     """
     if not isinstance(content, dict) or is_of_plan(content):
         return True

@@ -103,7 +103,7 @@ class View(Result, frozen=True):
     ``answer``: the best tree. A page about a network alone has no answer.
     ``searches``: the results of searches for the same goals.
     ``certified``: the answer whose certificate is shown.
-    ``lasting``: beside a plan, the answer where items last; no plan is better. The certificate is about it.
+    ``lasting``: beside a plan, the answer for lasting items, which no plan beats; ``certified`` is about it.
     ``without_rules``: the answer without user rules.
     ``alternatives`` and ``front``: other trees.
     ``why_not`` and ``shopping_list``: why there is no tree, and what would help.
@@ -274,10 +274,11 @@ def _pose_goals_or_data(
     units: Sequence[int],
     **items: Any,
 ) -> tuple[Problem | Foon]:
-    """Return the problem of the goals that are named or that a recipe has; without goals, the data.
+    """Return the problem of the goals, if there are any, or else the data; in a tuple of one.
 
-    The result is a tuple of one. If a ``tree`` or ``units`` are named, only named goals count. Raises
-    :class:`UserError` for options that do not go with what is shown.
+    Goals are those named or, without names, those that a recipe has. If a ``tree`` or ``units`` are named,
+    the goals of a recipe do not count. Raises :class:`UserError` for options that do not go with what is
+    shown.
     """
     listed = tree is not None or bool(units)
     for_goals = bool(goals_named) or (not listed and is_picture_of_tree(command, goals_named))
@@ -438,7 +439,7 @@ def _units_drawing(about: Problem | Foon, unit_ids: Sequence[int]) -> Drawing:
 def _drawing_without_goals(
     foon: Foon, rule: ContainerRule, tree: str | PathLike[str] | Iterable[FunctionalUnit]
 ) -> Drawing:
-    """Return the drawing of a tree without goals, with the part of the data that it touches.
+    """Return the drawing of a tree where no goals are given; only the data that it touches are read.
 
     ``rule`` is the container rule. A unit that is listed twice is drawn once.
     """
@@ -457,7 +458,7 @@ def pages(
     wanted: Container[str],
     rules: Mapping[str, Any],
 ) -> Iterator[View]:
-    """Yield a page about a tree as it grows: first with its answer, then each time with one more part.
+    """Yield a page several times: first with the answer, then each time with one more part.
 
     ``wanted`` are the names of the parts (:class:`PagePart`); ``rules`` are the rules of the settings, as
     keywords of questions. The first page has the network and, unless items are used up, the proof. Other
@@ -466,8 +467,8 @@ def pages(
     - Where items are used up and there are no rules: the answer for lasting items, and its proof. No plan
       costs less than this answer, except by ``kitchen``; there is no proof by ``kitchen``.
     - Under rules: the answer without them.
-    - If there is no tree: why, and a shopping list unless rules are the reason. This is the last part. It is
-      left out where items run out: if they lasted, there would be a tree.
+    - If there is no tree: why, and a shopping list unless rules are the reason. No other part follows. For
+      a plan, this part is left out if there is a tree for lasting items.
     - The searches, the five best alternatives and the front, as far as they are wanted.
 
     The limits of ``settings`` are for all pages together.
@@ -541,7 +542,7 @@ def pages(
 
 
 def _front_objectives(chosen: Sequence[Objective], rated: bool) -> tuple[Objective, ...]:
-    """Return the objectives of a front for a question with one objective: that one, and a second.
+    """Return two objectives for a front: the only objective of the question, and a second.
 
     The second is ``units``. For a question by ``units``, it is ``success``, or ``inputs`` without rates.
     """

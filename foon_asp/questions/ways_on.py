@@ -41,8 +41,8 @@ class WaysOn(WithAnswer, frozen=True, kw_only=True, tag=schema_name("state")):
         reached: Whether the goals are in the state.
         lacks: The fewest object nodes to add to the state so that the goals can be made, found as a shopping
             list. Empty if the goals can be made already; null if nothing helps, or a limit came first.
-        units: The units of all irredundant trees from the state with the nodes it lacks. Those that can run
-            now come first; among these, those of the best tree.
+        units: The units of all irredundant trees from the state, to which the nodes in ``lacks`` are added.
+            Units that can run now come before the others; in both groups, units of the best tree come first.
         answer: The best tree from the state with the nodes it lacks; null without one.
 
     Example:
@@ -59,7 +59,7 @@ class WaysOn(WithAnswer, frozen=True, kw_only=True, tag=schema_name("state")):
 
     @property
     def ending(self) -> Ending:
-        """The ending of the best tree; ``NEGATIVE`` if the state lacks nodes, or without a tree."""
+        """The ending of ``answer``; ``NEGATIVE`` if the state lacks nodes, or without a tree."""
         if self.lacks:
             return Ending.NEGATIVE
         return Ending.NEGATIVE if self.answer is None else self.answer.ending
@@ -68,7 +68,7 @@ class WaysOn(WithAnswer, frozen=True, kw_only=True, tag=schema_name("state")):
         """Return the nodes that the state lacks, the units that can run now, and the best tree.
 
         Up to ten units that can run now are listed. Of the other units, only the number is shown. If the
-        state has the goals, or if nothing was found that would help, there is only a line that says so.
+        state has the goals, or if nothing was found that would help, there is instead one line that says so.
         """
         yield from self.goal_lines()
         if self.reached:
@@ -148,8 +148,8 @@ def ways_on(
 def _units_to_goals(problem: Problem, stocked: Problem, answer: Answer | None) -> Iterator[WayOn]:
     """Yield the units that lead to the goals, in the order of :class:`WaysOn`, with the inputs they lack.
 
-    ``stocked`` is the problem with the nodes that the state lacks added to its kitchen. ``answer`` has the
-    best tree from there; ``None`` without one.
+    ``stocked`` is the problem whose kitchen also has the nodes that the state lacks. ``answer`` has the best
+    tree for ``stocked``; ``None`` without one.
     """
     best = frozenset() if answer is None else frozenset(answer.ids or ())
     lacking = {

@@ -61,10 +61,11 @@ def _reason_lines(problem: Problem, shown: int = 5) -> Iterator[str]:
 
 
 def _cause_lines(problem: Problem, shown: int = 3) -> Iterator[str]:
-    """Yield a line for each of the first ``shown`` causes on the path to the goals that lacks fewest nodes.
+    """Yield a line for each of the first ``shown`` causes why there is no tree, and one for the others.
 
-    A cause is a missing node, or a cycle of nodes that can only be made from each other. A missing goal is
-    left out, since another line names it.
+    A cause is a missing node, or a cycle of nodes that can only be made from each other. Causes are those on
+    the path to the goals that lacks the fewest nodes. A missing goal is left out, since another line names
+    it.
     """
     from foon_asp.problem.dead_ends import dead_ends  # noqa: PLC0415 (only where there is no tree)
 

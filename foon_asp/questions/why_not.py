@@ -33,7 +33,7 @@ if TYPE_CHECKING:  # takes clingo along, which only rules need
 
 
 class _MaxShown(NamedTuple):
-    """The greatest numbers that an explanation shows as text; JSON has all of it.
+    """The greatest numbers that an explanation shows as text; its JSON has everything.
 
     ``roots``: causes that are explained.
     ``dead_ends``: dead ends that are expanded.
@@ -57,7 +57,7 @@ _MAX_SHOWN = _MaxShown()
 
 
 class NearName(Value, frozen=True):
-    """A name that is one edit away from that of a missing node.
+    """A name that is one edit away from the name of a missing node.
 
     Attributes:
         name: A node of the network, or an entry of the kitchen file that matches no node.
@@ -100,7 +100,7 @@ class CycleStep(Value, frozen=True):
 
 
 class Root(Value, frozen=True):
-    """A cause of dead ends: an object node that is missing, or that can only be made from itself.
+    """A reason why goals cannot be made: an object node that is missing or can only be made from itself.
 
     Attributes:
         cause: missing: it is not in the kitchen and no unit makes it; cycle: it can only be made from itself.
@@ -380,9 +380,9 @@ def why_not(
 def _cheapest_stand_ins(problem: Problem, settings: "Settings") -> tuple[StandIn, ...] | UnsetType:
     """Return the cheapest stand-ins of the usual table with which there is a tree without rules.
 
-    If a limit stops the search, they are the cheapest found. Return ``UNSET`` if no stand-ins are enough, or
-    if none were found before the limit. Return it also where stand-ins cannot be used: below level 3, for
-    items that are used up, and in a problem that has stand-ins already.
+    If a limit stops the search, return the cheapest found so far. Return ``UNSET`` if there are none. Return
+    ``UNSET``, too, if stand-ins cannot be used: below level 3, if items are used up, or if the problem has
+    stand-ins already.
     """
     level, has_motion = problem.network.level, STAND_IN in problem.network.different_motions
     if level < 3 or problem.items is not None or has_motion:
@@ -396,10 +396,10 @@ def _cheapest_stand_ins(problem: Problem, settings: "Settings") -> tuple[StandIn
 
 
 def _with_near_names(problem: Problem, analysis: DeadEnds, roots: Iterable[Root]) -> Iterator[Root]:
-    """Yield the causes; a missing node gets similar names that were perhaps meant, a cycle is unchanged.
+    """Yield the causes; missing nodes get similar names that were perhaps meant, cycles are unchanged.
 
-    Similar are names one edit away (``near``), and up to two other nodes with the same label (``alike``). All
-    are available, or entries of the kitchen file that match no node.
+    Names one edit away (``near``) are nodes that are in the kitchen or can be made, and entries of the
+    kitchen file that match no node. Up to two other nodes have the same label (``alike``).
     """
     network, kitchen, origin = problem.network, problem.kitchen, problem.origin
     ids_available = {
@@ -431,11 +431,11 @@ def _with_near_names(problem: Problem, analysis: DeadEnds, roots: Iterable[Root]
 
 
 def _dead_end_lines(explanation: Explanation, numbers: Mapping[Node, int]) -> Iterator[str]:
-    """Yield the dead ends as lines of a tree, indented, from the unreachable goals on.
+    """Yield the dead ends as an indented tree of lines; the unreachable goals are its roots.
 
-    Below a node are its first achiever and the inputs that this unit lacks; other achievers follow as a line
-    each. Causes have their ``numbers``, by node, and are not expanded. Up to 12 other nodes are expanded,
-    each once, the nearest to the goals first.
+    Below a node are its first achiever and the inputs that this unit lacks, and then a line for each other
+    achiever. Nothing is below a cause, which has its number in ``numbers``. Of the other nodes, up to 12 are
+    expanded, each once; nodes nearest to the goals come first.
     """
     makers = {end.object: end.makers for end in explanation.dead_ends}
     expanded: set[Node] = set()

@@ -122,8 +122,8 @@ def sarif_log(findings: Sequence[Finding], version: str) -> Json:
 def _sarif_result(finding: Finding, rule: int) -> Json:
     """Return a finding as a result of SARIF, with its fix if that is safe.
 
-    ``rule`` is the index of its rule, from 0. The fix replaces the whole line. It is left out if the text of
-    the line is not known.
+    ``rule`` is the index of its rule, from 0. The fix replaces the whole line; if the text of the line is not
+    known, the fix is left out.
     """
     region: Json = {"startLine": max(1, finding.line), "startColumn": max(1, finding.column)}
     if finding.text:

@@ -17,7 +17,7 @@ T = TypeVar("T")
 
 
 class Unserialized(Generic[T]):
-    """Descriptor of a property of a document that is not in its JSON.
+    """A descriptor of a property that a document has, but its JSON does not have.
 
     :meth:`Document.set_unserialized` sets the property. Before that, it has the ``default``; without a
     default, it raises :class:`AttributeError`.
@@ -124,9 +124,9 @@ class AboutGoals(Document, frozen=True, kw_only=True):
         return text if self.items == "lasting" else f"{text}, items used up"
 
     def goal_lines(self, shown: int = 5) -> Iterator[str]:
-        """Yield a line for each goal, with the copies wanted if these are not one.
+        """Yield a line for each goal, with the number of copies wanted unless it is one.
 
-        Below level 3, up to ``shown`` of the level-3 nodes follow that a goal stands for.
+        Below level 3, each line is followed by up to ``shown`` level-3 nodes that the goal stands for.
         """
         for goal in self.goals:
             yield f"goal: {goal}" if goal.wanted is UNSET else f"goal: {goal.wanted} x {goal}"

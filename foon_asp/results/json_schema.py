@@ -127,7 +127,7 @@ def _schema_of_type(kind: type) -> Json:
 
 
 def _structs_in(document: type[Struct]) -> set[type[Struct]]:
-    """Return the struct classes in the fields of a document, at any depth, with its own class."""
+    """Return the class of a document, and the struct classes in its fields at any depth."""
     kinds, waiting = set[type[Struct]](), [msgspec.inspect.type_info(document)]
     for info in waiting:  # grows during the loop
         if isinstance(info, msgspec.inspect.StructType) and info.cls not in kinds:
@@ -142,8 +142,8 @@ def _structs_in(document: type[Struct]) -> set[type[Struct]]:
 def _describe_struct(schema: Json, bases: Sequence[type]) -> None:
     """Add descriptions from docstrings to the schema of a struct, in place; forbid other keys.
 
-    ``bases`` are the struct's class and its base classes, whose docstrings describe inherited fields. If it
-    is empty, the docstring is the description in the schema.
+    ``bases`` are the struct's class and its base classes, whose docstrings describe inherited fields. If
+    ``bases`` is empty, the docstring is the description in the schema.
     """
     docstring = schema.pop("description", "")
     schema["description"] = docstring.partition("\n")[0]

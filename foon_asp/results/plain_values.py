@@ -17,7 +17,8 @@ T = TypeVar("T")
 def plain(value: object) -> Any:
     """Return a value as dictionaries, lists, texts and numbers, in the order in which JSON has them.
 
-    A fraction is ``{"exact": "27/1250", "approx": 0.0216}``; ``approx`` is ``None`` above all floats.
+    A fraction is ``{"exact": "27/1250", "approx": 0.0216}``; for one beyond the largest float, ``approx`` is
+    ``None``.
     """
     return msgspec.to_builtins(value, enc_hook=_encode)
 
@@ -61,7 +62,8 @@ def exact_measures(
 ) -> dict[str, int | Fraction | None]:
     """Return measures by the name of the objective.
 
-    A measure is an integer if the objective has only whole numbers, else a fraction. ``None`` stays ``None``.
+    A measure is an integer if all values of the objective are whole numbers; otherwise it is a fraction.
+    ``None`` stays ``None``.
     """
     return {
         str(objective): None
@@ -84,9 +86,9 @@ def read_plain(kind: type[T], value: Json) -> T:
 
 
 def _decode(kind: type, value: Any) -> Objective | Fraction | int:
-    """Return an objective, if ``kind`` is its class, or else a fraction from its plain form.
+    """Return the objective (if ``kind`` is its class) or else the fraction that a plain form stands for.
 
-    Objectives and integers are returned as they are.
+    A value that is an objective or an integer already is returned as it is.
     """
     if isinstance(value, Objective) or type(value) is int:
         return value

@@ -24,7 +24,7 @@ class Table(NamedTuple):
     A row that is a single text is a line of its own, a title of the rows that follow.
     ``left_aligned``: the indices, from 0, of columns aligned to the left.
     ``indent``: the number of spaces before each line.
-    ``headed``: whether the headings are a line above aligned columns. Where the terminal is narrow, each row
+    ``headed``: whether the headings are a line above aligned columns. On a narrow terminal, each row
     is a block with a line ``heading: cell`` for each cell that is not empty.
     """
 

@@ -15,11 +15,11 @@ _WRITTEN_NUMBER = re.compile(r"[+-]?[0-9]+(?:[./][0-9]+)?(?:e[+-]?[0-9]+)?", re.
 
 
 def flat_row(row: Json) -> Json:
-    """Return a row without nested values, and without its schema.
+    """Return a row with its nested values as entries of the row itself, and without its schema.
 
-    The key of a nested value has a dot: ``costs.units``. An exact number becomes a decimal, and another key
-    ending in ``_exact`` has the exact number. Nodes and places are in one-line notation. Lists of structured
-    values are left out.
+    The key of an entry that was nested has a dot: ``costs.units``. An exact number becomes a decimal, and
+    another key ending in ``_exact`` has the exact number. Nodes and places are in one-line notation. Lists of
+    structured values are left out.
     """
     return {
         flat_name: value
@@ -86,7 +86,7 @@ def table_cells(
 
 
 def _cell(row: Json, name: str) -> Any:
-    """Return the value of a row in a column; for an exact column, also of a whole number."""
+    """Return the value of a row in a column, or ``None``; an exact column has whole numbers as text, too."""
     if name not in row and name.endswith(_EXACT):
         whole_number = row.get(name.removesuffix(_EXACT))
         return None if whole_number is None else str(whole_number)
@@ -108,10 +108,10 @@ def csv_text(rows: Iterable[Json], names: Sequence[str] | None = None) -> str:
 
 
 def safe_cell(text: str) -> str:
-    """Return the text of a cell with control characters escaped.
+    """Return the text of a cell with control characters escaped, safe for spreadsheets.
 
-    If spreadsheets would take it for a formula, it stands behind an apostrophe. A number such as ``-1`` does
-    not.
+    An apostrophe is put before a text that spreadsheets would take for a formula, but not before a number
+    such as ``-1``.
     """
     text = escaped(text)  # of what begins a formula, tabs and line ends
     return f"'{text}" if text[:1] in {"=", "+", "-", "@"} and not _WRITTEN_NUMBER.fullmatch(text) else text

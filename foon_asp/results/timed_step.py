@@ -34,8 +34,8 @@ class TimedStep(NumberedStep, frozen=True):
         agent: The number of the agent that does it, from 1; null where nobody has to stand by.
         tools: The copies of tools that it uses and no other step uses meanwhile, in the order of the unit's
             objects.
-        after: The numbers, from 1, of the steps that it waits for: it takes what they make, or uses up what
-            they need.
+        after: The numbers, from 1, of the steps that it waits for, since it takes what they make or uses up
+            what they need.
         amount: Where items are used up: how many copies of the product it makes, if that is not one.
 
     Example:

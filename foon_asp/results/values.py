@@ -200,7 +200,7 @@ class UnitDifference(Value, frozen=True):
     """One difference between two units, named once however often it occurs.
 
     Attributes:
-        kind: motion, label, state, relation, ingredient, or for a whole object node input or output.
+        kind: motion, label, state, relation or ingredient; input or output for a whole object node.
         a: The word of the first unit; null if only the second has one.
         b: The word of the second unit; null if only the first has one.
         of: The label of the object that it belongs to; null for a motion or a whole node.
@@ -243,7 +243,7 @@ class Step(Value, frozen=True):
     def lines(self, details: int = 5) -> Iterator[str]:
         """Yield lines of text: motion and place, inputs with their origins, and outputs.
 
-        Below level 3, up to ``details`` of the level-3 units follow that the step stands for.
+        Below level 3, lines follow for up to ``details`` of the level-3 units that the step stands for.
         """
         who = "    by the person" if self.by == "person" else ""
         times = "" if self.times is UNSET or self.times == 1 else f"{self.times} times "
@@ -272,7 +272,7 @@ class Lack(Value, frozen=True):
     """A missing copy of an object node.
 
     Attributes:
-        position: The number of the step that lacks it, from 1; null for a goal in the end.
+        position: The number of the step that lacks it, from 1; null if a goal lacks it in the end.
         used_up_by: The numbers of the steps that used up the copies, from 1.
         amount: How many copies are needed, if that is not one.
         unit: The unit of the step, if the plan was replayed; null for a goal.

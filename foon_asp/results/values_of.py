@@ -340,7 +340,7 @@ def _input_origin(
 def _steps_with_copies(
     problem: Problem, plan: Collection[int], bought: Mapping[int, int]
 ) -> Iterator[tuple[int, int | UnsetType, Sequence[Origin]]]:
-    """Yield the steps as :func:`_steps_with_origins` does, where items are used up.
+    """Yield the steps where items are used up, each as :func:`_steps_with_origins` yields it.
 
     Each step takes the oldest copies of its inputs; bought copies come after those of the kitchen. Where
     amounts are counted, equal units that follow each other are one step.
@@ -369,7 +369,8 @@ def _steps_with_copies(
 def _take_oldest(copies: deque[tuple[Origin, int]], amount: int) -> Origin:
     """Remove ``amount`` of the oldest copies from the queue, and return the origin of the oldest copy.
 
-    ``copies`` has origins with numbers of copies. For an empty queue, the origin is ``missing``.
+    Each entry of ``copies`` is an origin and its number of copies. For an empty queue, the origin is
+    ``missing``.
     """
     while copies and not copies[0][1]:
         copies.popleft()

@@ -9,8 +9,8 @@ from foon_asp.searches.ties import least_chooser
 def breadth_first(problem: Problem, settings: SearchSettings) -> Retrieval:
     """Retrieve a tree breadth-first.
 
-    For each object, the first achiever in file order is chosen, or the last if ``ties`` of the settings is
-    so. It is chosen even if it can never execute. So the tree has only the guarantees of
+    For each object, the first achiever in file order is chosen, even if it can never execute. If ``ties`` of
+    the settings is ``last``, the last achiever is chosen instead. The tree has only the guarantees of
     :func:`~foon_asp.searches.retrieval.retrieve_backward`.
     """
     return retrieve_backward(problem, least_chooser(settings.ties))

@@ -9,7 +9,7 @@ from foon_asp.searches.ties import least_chooser
 def depth_first(problem: Problem, settings: SearchSettings) -> Retrieval:
     """Retrieve a tree depth-first, with the guarantees of breadth-first retrieval.
 
-    The units are the same as those of breadth-first retrieval; only their order differs. The reason is that
-    the choice of the achiever of an object does not depend on the order of the objects.
+    The units are the same as those of breadth-first retrieval, since the choice of an achiever does not
+    depend on the order of the objects. Only the order of the units differs.
     """
     return retrieve_backward(problem, least_chooser(settings.ties), stack=True)

@@ -11,8 +11,8 @@ def greedy_inputs(problem: Problem, settings: SearchSettings) -> Retrieval:
 
     Ingredients of inputs also count, unless ``count`` of the settings is ``nodes``.
 
-    The choice is locally optimal only: the number of inputs of the tree may be far from the optimum, and the
-    tree may not execute.
+    The choice is locally optimal only. The tree may have far more inputs than the optimum, and may not
+    execute.
     """
     network = problem.network
 

@@ -10,8 +10,8 @@ from foon_asp.searches.ties import least_chooser
 def greedy_success(problem: Problem, settings: SearchSettings) -> Retrieval:
     """Retrieve a tree that has, for each object, the achiever with the highest success rate.
 
-    The choice is locally optimal only: the success rate of the tree may be far from the optimum, and the tree
-    may not execute.
+    The choice is locally optimal only. The success rate of the tree may be far below the optimum, and the
+    tree may not execute.
 
     Raises :class:`UserError` where no rates are known.
     """

@@ -10,16 +10,16 @@ from foon_asp.searches.search_interface import SearchSettings
 def iterative_deepening(problem: Problem, settings: SearchSettings) -> Retrieval:
     """Return an executable tree of least depth, or prove that none exists.
 
-    A kitchen item has depth 0, an object the depth of its achiever, and a unit the depth of its deepest
+    A kitchen item has depth 0. An object has the depth of its achiever. A unit has the depth of its deepest
     precondition plus 1. The depth of a tree is that of its deepest goal.
 
-    The depth limit grows from 0. Within a limit, the achievers of an object are tried in file order, until
-    all preconditions of one are solved within the limit minus 1. Results are kept, so that each limit takes
-    at most one pass over the relevant units. If a limit solves no new object, no later one does, and the
-    search ends.
+    The depth limit grows from 0. An object is solved within a limit if all preconditions of an achiever are
+    solved within the limit minus 1; achievers are tried in file order. Results are kept, so that each limit
+    takes at most one pass over the relevant units. If no new object is solved within a limit, a larger limit
+    does not help, and the search ends.
 
     At a limit of the ``settings`` (depth, time or memory), the ending is ``unknown``. With ``published``,
-    breadth-first retrieval is run instead, with its ``ties``, as the published programs do under this name.
+    breadth-first retrieval is run instead, as the published programs do under this name; it follows ``ties``.
     """
     if settings.published:
         return breadth_first(problem, settings)
@@ -121,7 +121,7 @@ class _DepthLimited:
     def _memoized(self, o: int, limit: int) -> bool | None:
         """Return whether an object can be made within a limit, if that needs no search; else ``None``.
 
-        Kitchen items, the limit 0 and recorded results need none.
+        No search is needed for a kitchen item, for the limit 0, and where a result is recorded.
         """
         if o in self.problem.kitchen:
             return True

@@ -33,7 +33,7 @@ SEARCHES: Final[Mapping[str, Search]] = {
 def search_names() -> tuple[str, ...]:
     """Return the names of all searches, those of other packages last, each name once.
 
-    Names that two searches have raise no error.
+    A name that two searches share raises no error here.
     """
     return tuple(dict.fromkeys([*SEARCHES, *(offer.name for offer in find_offers(ENTRY_POINTS))]))
 
