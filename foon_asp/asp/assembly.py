@@ -335,7 +335,7 @@ def hold_for_subtrees(settings: Settings) -> bool:
 
 
 def need_clingo(settings: Settings) -> bool:
-    """Whether clingo has to enforce user rules, since they do more than remove and require units.
+    """Whether user rules do more than remove and require units, so that clingo has to enforce them.
 
     Return ``False`` without rules, and for rules that are not analysed. Rules are not analysed if they are
     rewritten, or if encodings are replaced. Raises as :func:`assemble` does.

@@ -38,12 +38,12 @@ class Bounded(NamedTuple):
 
     ``rules``: the facts that the encodings read.
     ``files``: encodings of ``encodings/questions``.
-    ``below``: mappings from objectives to costs with fractions. Of each mapping, a tree has to be below at
-    least one cost. The mappings are written as facts once the scale of the costs is known.
+    ``below``: mappings from objectives to costs with fractions. A tree has to cost less than at least one
+    cost of each mapping. The mappings are written as facts once the scale of the costs is known.
     ``incomparable``: known plans, as numbers of executions by unit id; no plan may contain one.
 
     The bounds are antimonotone: if a tree meets them, so does each subtree. Therefore, units that the goals
-    do not need cannot matter. If items are used up, there are no rules and files, and each mapping of
+    do not need can be ignored. If items are used up, there are no rules and files, and each mapping of
     ``below`` has one cost.
     """
 

@@ -731,10 +731,10 @@ class _Solver:
         return agree
 
     def _require_measures(self, agree: bool) -> None:
-        """Raise :class:`UserError` if ``agree`` is false: clingo's costs of a tree differ from our weights.
+        """Raise :class:`UserError` unless ``agree``: clingo's costs of a tree equal our weights.
 
-        To be called for later trees, if the costs of an earlier tree agreed. A disagreement then means that a
-        replaced objectives.lp measures only some trees as usual, so that trees cannot be compared.
+        Called for later trees, after the costs of an earlier tree agreed. A disagreement then means that a
+        replaced objectives.lp is the usual measure for some trees only, so that trees cannot be compared.
         """
         if not agree:
             raise UserError(

@@ -88,8 +88,8 @@ def _questions_of_line(value: object, time_limit: float | None) -> Iterator[Batc
     """Yield a question for every combination of the values of a line, goals varying fastest.
 
     ``value`` is the line as read from JSON. ``time_limit`` is for a line without one. A list of a single goal
-    becomes the goal. If amounts are stated, items are used up. Raises :class:`ValueError` for a wrong value,
-    and for keys that do not go together.
+    becomes the goal. If the line states amounts but not how items are used, the questions have items used up.
+    Raises :class:`ValueError` for a wrong value, and for keys that do not go together.
     """
     if not isinstance(value, dict) or "goal" not in value:
         raise ValueError('expected an object such as {"goal": "ice", "objective": ["units", "success"]}')

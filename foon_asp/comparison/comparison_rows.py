@@ -17,7 +17,7 @@ from foon_asp.searches import Search, SearchSettings
 
 
 def read_comparison(row: Json) -> Comparison:
-    """Return the comparison that a row of a file, as plain values, stands for.
+    """Read back a comparison from a row of a file, given as plain values.
 
     For a value that is no such row, raises one of the errors that :class:`RowForm` lists.
     """

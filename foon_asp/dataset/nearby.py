@@ -200,14 +200,15 @@ class NearbyProblem(Problem):
 
     @cached_property
     def full_problem(self) -> Problem:
-        """The problem over all units that the goals can need, which are read now."""
+        """The problem over all units that the goals can need; the first access reads these units."""
         assert self.start is not None
         return self.start.full_problem()
 
     def nearby(self) -> Nearby | None:
         """Return a copy of ``start``, in which more units can be read without changing this problem.
 
-        Return ``None`` if all units were read, or for a problem with its own values.
+        Return ``None`` if all units were read. Return ``None`` also for a changed copy of a problem, which
+        reads no units.
         """
         return None if self.start is None or "full_problem" in vars(self) else self.start.copy()
 

@@ -24,7 +24,7 @@ class NamedData(Protocol):
 
     @property
     def goal_entries(self) -> Sequence[ListedObject]:
-        """The entries of the goals file. The names in them are also names of the goals."""
+        """The entries of the goals file; a goal may also be called by the name that its entry has."""
 
     def at_hand(self, o: int) -> bool:
         """Whether an object node, by id, is in the kitchen."""

@@ -64,7 +64,8 @@ class EditedText:
     def edits_to(self, lines: list[str]) -> list[Json]:
         """Return the edits that turn the text into a text with these lines; unchanged lines get no edit.
 
-        A single edit covers the last line of the shorter text and all lines after it.
+        The lines are compared one by one up to the last line of the shorter text. One edit covers this line
+        and all lines after it.
         """
         last = min(len(self.lines), len(lines)) - 1  # the edit of this line covers all lines after it
         edits = [

@@ -22,7 +22,7 @@ from foon_asp.hypergraph.landmark_relaxation import PARTS, LandmarkRelaxation
 
 
 class CostPartition(NamedTuple):
-    """A cost partition over cuts. Its costs are integers in parts: :data:`PARTS` is a cost of 1.
+    """A cost partition over cuts. Its costs are integers: the costs times :data:`PARTS`.
 
     ``bound``: the sum of the weights. No derivation by the actions of the relaxation costs less.
     ``reduced_costs``: the reduced cost of each action.

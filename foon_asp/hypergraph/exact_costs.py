@@ -237,9 +237,10 @@ class _Vectors:
         self._costs, self._coordinates = costs, coordinates
 
     def vector(self, action: int) -> list[int]:
-        """Return the cost of an action as a vector; its rate has the exponent 1, other rates have 0.
+        """Return the cost of an action as a vector.
 
-        A rate of 1 has no coordinate, so all exponents are 0.
+        Where rates multiply, the vector has an exponent for each rate: 1 for the rate of the action, 0 for
+        all others. A rate of 1 has no exponent of its own.
         """
         vector: list[int] = []
         for objective, figure in self._costs.scaled_costs(action):

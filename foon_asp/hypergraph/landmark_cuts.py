@@ -64,8 +64,9 @@ class Cuts(NamedTuple):
 
 
 class _Level:
-    """Some objects that every derivation of a target makes. The last of them has a goal zone.
+    """A level of a target: some objects that every derivation of the target makes.
 
+    The last of these objects has a goal zone.
     ``zone``: the goal zone, a set of objects that grows backwards through actions of reduced cost 0. It is
     empty at first.
     ``frontier``: the actions of reduced cost above 0 that achieve an object of the zone, as keys of a dict.
@@ -97,10 +98,11 @@ class _Target:
         self.outer_zones: set[int] = set()
 
     def top_level(self, free: Container[int]) -> _Level | None:
-        """Return the topmost level whose last object is not free; ``None`` if the target itself is free.
+        """Drop what is free from the top of the stack, and return the level that is then on top.
 
-        An object is free if it can be made at reduced cost 0. Higher levels, which have only free objects,
-        are removed from the stack. Free objects at the end of a level are removed as well.
+        An object is free if it can be made at reduced cost 0. Free objects at the end of the top level are
+        removed, and so are levels that become empty. Return ``None`` if no level remains: the target itself
+        is free.
         """
         while self.levels:
             level = self.levels[-1]
@@ -248,8 +250,8 @@ class _Search:
         """Grow the zone of a level through actions of reduced cost 0, and return its new objects.
 
         The zone and the frontier of the level are changed in place. Actions that need an object of
-        ``outer_zones`` are skipped. Return ``None`` if all preconditions of an action of reduced cost 0 are
-        free. Then the zone has to be cleared.
+        ``outer_zones`` are skipped. Return ``None`` if an action of reduced cost 0 has only free
+        preconditions: an object of the zone is then free, and the caller has to clear the zone.
         """
         needs, achievers, reduced_costs = self._graph.needs, self._graph.makers, self.reduced_costs
         zone, frontier = level.zone, level.frontier

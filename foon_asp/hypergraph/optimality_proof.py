@@ -388,8 +388,9 @@ class Prover:
         """Return a proof by reduced-cost fixing.
 
         A derivation with an action costs at least the bound of ``packing`` plus the reduced cost of the
-        action. For derivations without the actions above the cutoff, ``others`` proves the goal. If no
-        landmark of the proof by ``others`` has such an action, that proof is returned as it is.
+        action. This proves the goal for derivations with an action above the cutoff; ``others`` proves it for
+        all others. If no landmark of the proof by ``others`` has an action above the cutoff, that proof holds
+        for all derivations, and is returned as it is.
 
         Return ``None`` if too few actions are above the cutoff, or ``step`` is 0.
         """
@@ -413,9 +414,10 @@ class Prover:
             yield from self._landmark_of(frozenset(objects))
 
     def _widen(self, cutter: Cutter, objects: Iterable[int]) -> Cut:
-        """Return the cut of some objects; it is widened if an action that cannot run crosses it.
+        """Return the cut with the given objects inside, without the initial ones among them.
 
-        Initial objects are left out. Forbidden actions are not in the landmark.
+        If an action that cannot run crosses the cut, unreachable objects are added to it. Forbidden actions
+        are left out of its landmark.
         """
         inside = frozenset(o for o in objects if not self._graph.at_start[o])
         members = cutter.without_forbidden(self._landmark_of(inside))

@@ -186,7 +186,7 @@ class SharedLandmarks:
     def _record_reached(self, rows: Iterable[int]) -> None:
         """Record for each new landmark, given by number, which objects are reachable without its actions.
 
-        The new landmark is a landmark of all other objects.
+        An object that is not reachable without them has the landmark.
         """
         for row in rows:
             landmark = frozenset(self._relaxation.rows[row].tolist())
@@ -206,7 +206,7 @@ class SharedLandmarks:
         return min(tree, *map(frozenset, trees), key=lambda tree: sum(map(costs, tree)))
 
     def _cut_of_row(self, row: int, targets: Iterable[int]) -> frozenset[int]:
-        """Return a cut of one of the targets; its landmark is a subset of the landmark number ``row``.
+        """Return a cut of one of the targets whose landmark is contained in the landmark number ``row``.
 
         ``targets`` are numbers in the relaxation. The result has object numbers of the whole graph.
         """

@@ -96,7 +96,8 @@ class ProofTuning(NamedTuple):
 
     ``rounded_actions``: a number of actions. If there are more, rounded weights are tried before exact ones.
     ``greedy_cuts``: how many known cuts get weights greedily. The others get weights only from the LP.
-    ``fixed_share``: a share of the actions. If more are above the cutoff, these are fixed at once.
+    ``fixed_share``: if the reduced costs of more than this share of the actions are above the cutoff, all
+    these actions are fixed at once.
     ``search_budget``: how many actions branch and bound may look at; this takes about a minute of processor
     time.
     ``proof_length``: how many objects and landmark actions a proof by branching may list.

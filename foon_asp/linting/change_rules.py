@@ -82,7 +82,7 @@ def find_outputs_from_nothing(context: Context) -> Iterator[Diagnostic]:
 
 
 def _units_by_made_node(context: Context) -> dict[ObjectNode, int]:
-    """Return, by node, the id of the first unit that makes it out of inputs that name its label.
+    """Return, by node, the id of the first unit that makes it out of inputs with its label among their names.
 
     The names of an input are its label, its contents and the objects of its relations. Nodes without such a
     unit are left out.

@@ -15,8 +15,8 @@ Kind = NameKind
 def is_of_another_network(unknown: int, total: int) -> bool:
     """Whether a list or table is probably for another network, as most of its names are unknown.
 
-    ``unknown`` of its ``total`` names are unknown. False for up to ten unknown names: these are probably
-    slips, which are reported one by one.
+    ``total`` is the number of its names, and ``unknown`` how many of them the network lacks. False for up to
+    ten unknown names: these are probably slips, which are reported one by one.
     """
     return unknown > 10 and 2 * unknown > total
 

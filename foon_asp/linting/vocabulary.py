@@ -46,8 +46,8 @@ class Vocabulary:
     def of(cls, names: Names, habits: Habits) -> "Vocabulary":
         """Collect the names and habits of linted files.
 
-        Utensils are objects to which others have a relation, and the names in ``utensils.txt``. Lines with
-        remarks of the reader do not count for the brackets of words, nor for utensils.
+        Utensils are objects to which others have a relation, and the names in ``utensils.txt``. Lines on
+        which the reader made remarks are ignored for the brackets that follow words, and for utensils.
         """
         rows: list[_Row] = [
             (kind, name, ()) for kind in Kind if kind is not Kind.WORD for name in names.mentions[kind]

@@ -101,6 +101,6 @@ def _node_line(box: Box, label: Sequence[str], attributes: str) -> str:
 
 
 def _quoted_lines(lines: Sequence[str]) -> str:
-    """Return lines as a quoted string of DOT, which Graphviz shows as they are, with line breaks between."""
+    """Return a quoted string of DOT that Graphviz shows as these lines, one below the other."""
     plain = (line.replace("\\", r"\\").replace('"', r"\"").replace("&", "&amp;") for line in lines)
     return '"' + r"\n".join(plain) + '"'

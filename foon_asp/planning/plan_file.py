@@ -93,8 +93,8 @@ def read_plan_text(text: str, file: str, names: NameMap) -> Sequence[PlanStep]:
 def _plan_lines(lines: Sequence[str], file: str) -> Sequence[tuple[int, str]]:
     """Return the lines of a plan with their numbers from 1: all lines, or those of the last plan in a log.
 
-    Lines of a log are without time stamps and costs of steps. Raises :class:`InputError` for a log without a
-    plan, and for one whose last plan is cut off or has another length than the log says.
+    From the lines of a log, time stamps and costs of steps are removed. Raises :class:`InputError` for a log
+    without a plan, and for one whose last plan is cut off or has another length than the log says.
     """
     plan_starts = [index for index, line in enumerate(lines) if _PLAN_FOLLOWS.match(line.strip())]
     if not plan_starts:

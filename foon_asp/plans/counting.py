@@ -26,7 +26,10 @@ from foon_asp.problem.costs import Costs
 
 
 class _ManyError(Exception):
-    """Raised after too many searches for orders of counts; clingo then searches all counts at once."""
+    """Raised when too many vectors of counts were searched for an order that runs.
+
+    Then clingo searches for counts and an order together.
+    """
 
 
 class Counting:
@@ -380,11 +383,12 @@ class Counting:
         return order_executions(self._problem, run.rows["times"], run.rows["_after"])
 
     def _run_clingo(self, times: Mapping[int, tuple[int, int]], best: bool) -> Run:
-        """Run clingo for a plan with the least and greatest ``times`` of each action; return the run.
+        """Run clingo for a plan; return the run.
 
-        With ``best``, it searches for the best plan, within the bounds of the question. Otherwise, only the
-        items taken are minimized, if ``kitchen`` is an objective. The time of the run is added to the
-        question, and its statistics are reported.
+        ``times`` has for each action the fewest and the most executions. With ``best``, clingo searches for
+        the best plan, within the bounds of the question. Otherwise, only the items taken are minimized, if
+        ``kitchen`` is an objective. The seconds that clingo took are added to the question, and its
+        statistics are reported.
         """
         from foon_asp.encoding import clingo_run, fact_writer  # noqa: PLC0415 (takes clingo along)
         from foon_asp.encoding.cost_scales import Scales  # noqa: PLC0415

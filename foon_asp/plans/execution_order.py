@@ -199,5 +199,5 @@ class _OrderSearch:
 
 
 def plan_of(units: Sequence[int], runs: Sequence[Run]) -> tuple[int, ...]:
-    """Return the units that runs execute, in order, with repeats; action ``a`` is ``units[a]``."""
+    """Return the units of a sequence of runs, in order, with repeats; action ``a`` is ``units[a]``."""
     return tuple(unit for action, times in runs for unit in (units[action],) * times)

@@ -68,8 +68,9 @@ class Flows:
     def remainders(self) -> Iterator[Remainder]:
         """The remainders of objects.
 
-        An object has remainders if every action that asks for it leaves more copies than its target. There is
-        one for each such action. ``copies`` is the least number of copies that any of the actions leaves.
+        An object has remainders if every action that asks for it leaves more copies than its target. Each of
+        these actions has a remainder of the object. ``copies`` is the least number of copies that any of them
+        leaves.
         """
         remaining_by_object: dict[int, dict[int, int]] = {}
         for action, preconditions in enumerate(self.asks):

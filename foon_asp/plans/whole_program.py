@@ -198,7 +198,7 @@ class WholeProgram:
         return x
 
     def relaxation(self, objective: Mapping[int, float]) -> Relaxation:
-        """Return the solution of the relaxation in floats, with the weights of its rows and its basis.
+        """Return the solution of the relaxation in floats, the duals of its rows, and its basis.
 
         Raises :class:`Stopped` if time is up.
         """

@@ -25,8 +25,9 @@ class Cause(StrEnum):
 class RootCause(NamedTuple):
     """An object node that causes dead ends: goals that cannot be made.
 
-    ``object``: the id of the node. For the cause ``cycle``, it is one of the nodes of the cycle: if
-    possible, one on the cheapest path to the goals.
+    ``object``: the id of the node. For the cause ``cycle``, it is a node of the cycle, if possible one on
+    the cheapest path to the goals.
+    ``cause``: why it cannot be made: ``missing`` or ``cycle``.
     ``stops``: the ids of the units that need the node, or a node of its cycle, on some path to an
     unreachable goal.
     ``on_the_way``: whether the cheapest path to the goals needs the node, or a node of its cycle. The

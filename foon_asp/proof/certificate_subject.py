@@ -49,8 +49,8 @@ class Subject(NamedTuple):
     def canonical_data(self, rules: Iterable[Rule] = (), goals: Iterable[int] = ()) -> str:
         """Return all data that a certificate with these rules and goals depends on, as canonical JSON.
 
-        It is an object with the data of each digest, by name, and under ``goals`` a pair of id and text for
-        each goal. Digests in ``stated`` are not used.
+        It is an object. For the name of each digest, it has the data that the digest is computed from, also
+        if the digest is in ``stated``. Under ``goals``, it has a pair of id and text for each goal.
         """
         values = {name: value() for name, value in self._digest_data(rules).items()}
         return canonical_json(

@@ -62,8 +62,8 @@ def _execution_of(
 ) -> Callable[[FunctionalUnit], Execution]:
     """Return a cached function from a unit to its execution.
 
-    ``items`` is ``None`` if items last. At level 3, problems whose items last share the function.
-    ``network`` is the network of the units if its level is below 3, and ``None`` otherwise.
+    ``items`` says how items are used up; ``None`` if they last. ``network`` is the network of the units if
+    its level is below 3, and ``None`` otherwise.
     """
     if items is None and network is None:
         return _shared_execution_of(rule, utensils)

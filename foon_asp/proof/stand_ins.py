@@ -196,7 +196,7 @@ class _Servers:
         return self._prices_of[served]
 
     def _candidates(self, node: ObjectNode) -> Iterator[int]:
-        """Yield the nodes, by id, that may have a price in place of ``node``; a node may be yielded twice.
+        """Yield the ids of nodes for which the table may have a price in place of ``node``, maybe twice.
 
         Their label is spelled like that of ``node``, or the table lists the pair of labels or of nodes.
         ``node`` itself is yielded as well.

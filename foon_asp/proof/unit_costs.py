@@ -38,7 +38,7 @@ _MEASURE_NAME = re.compile(r"[a-z][A-Za-z0-9_']*", re.ASCII)
 class UnitCosts:
     """The costs of units and kitchen items by the objectives of a certificate.
 
-    A unit has its id as number, and kitchen item ``k`` the number of units plus ``k``.
+    The number of a unit is its id. The number of kitchen item ``k`` is ``k`` plus the number of units.
 
     ``objectives``: the objectives, most important first; empty if the claim is that there is no tree.
     ``measures``: the statements of the certificate about measures, by name.

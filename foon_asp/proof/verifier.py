@@ -207,10 +207,10 @@ class Check:
         require(fault is None, f"the tree {fault}")
 
     def _barred_units(self, number: int, used: frozenset[int], without: frozenset[int]) -> frozenset[int]:
-        """Return the units that the constraint ``number`` bars on a branch.
+        """Return the units that the constraint ``number`` bars on a branch: no tree of the branch has them.
 
-        No tree of the branch has such a unit: it has all members ``used``, and none of ``without``. The work
-        counts as steps of the check.
+        A tree of the branch has all members ``used``, and none of ``without``. The work counts as steps of
+        the check.
         """
         self.budget.spend(len(self.network) + 5 * self.claim_size)
         units = frozenset(member for member in used if member < len(self.network))
@@ -293,10 +293,11 @@ class Check:
         cost of its other members. If the tree has a certain member, the bound rises by the member's reduced
         cost.
 
-        ``weights`` and ``limits`` are rows of a proof: the weights of cuts and of limits. The weights of the
-        cuts of a member may add up to at most its cost. A limit with a weight raises this maximum by the
-        weight times the amount of the member in the limit. In return, the sum falls by the weight times what
-        ``used`` leaves of the limit. Refuse greater weights of cuts. The cuts count as used by the proof.
+        ``weights`` and ``limits`` are rows of a proof: the weights of cuts and of limits. The weights of a
+        member's cuts may add up to its cost. Each limit with a weight adds to this maximum: the weight times
+        the amount of the member in the limit. For each such limit, the sum is reduced by the weight times
+        what ``used`` leaves of the limit. Greater weights of cuts are refused. The cuts count as used by the
+        proof.
         """
         total: Amount = {}
         weighted_limits: list[tuple[Amount, Mapping[int, Fraction]]] = []

@@ -137,8 +137,9 @@ class Clash(Value, frozen=True, kw_only=True):
 def find_clash(problem: Problem, settings: Settings, own_weights: Mapping[Constraint, int]) -> Clash:
     """Find a smallest clash of the constraints in ``settings``, and the cheapest constraints to drop.
 
-    The result also has the best tree by units without the dropped constraints. ``own_weights`` has the cost
-    of dropping a rule of a constraint; the default is 1. At a limit, the result has what was found by then.
+    The result also has the tree with the fewest units if the cheapest constraints are dropped.
+    ``own_weights`` has, by constraint, the cost of dropping one of its rules; the default is 1. At a limit,
+    the result has what was found by then.
 
     The smallest clash is a smallest minimal unsatisfiable subset (MUS). It is found by implicit hitting sets
     (Ignatiev, Previti, Liffiton and Marques-Silva, Smallest MUS Extraction with Minimal Hitting Set

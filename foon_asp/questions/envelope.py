@@ -48,9 +48,9 @@ class Envelope:
     """
 
     def __init__(self, problem: Problem, tree: tuple[int, ...], settings: Settings) -> None:
-        """Find the motions that trees may have; search for those whose rates may rise to 1 without effect.
+        """Find the motions that trees may have, and the motions that may rise to 1 while the tree stays best.
 
-        At a limit or ctrl-C, this search is given up, and the deadline is interrupted.
+        At a limit or ctrl-C, the second search is given up, and the deadline counts as interrupted.
         """
         self._problem, self._tree, self._settings = problem, tree, settings
         self._postconditions = Postconditions(problem, levels(_SUCCESS), settings)

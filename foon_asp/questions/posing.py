@@ -108,8 +108,8 @@ def pose_data(command: Command) -> "tuple[Foon]":
 def is_picture_of_tree(command: Command, goals_named: Sequence[str]) -> bool:
     """Return whether a picture is of a tree; otherwise, it is of the whole network.
 
-    If goals are named, the picture is of a tree. If a recipe is an argument and not an option, it is of a
-    tree as well. Raises :class:`UserError` for a recipe with several goals, since a picture is of one tree.
+    A picture is of a tree if goals are named, or if a recipe is an argument and not an option. Raises
+    :class:`UserError` for a recipe with several goals, since a picture is of one tree.
     """
     if goals_named or not command.given("sources"):
         return bool(goals_named)

@@ -40,7 +40,7 @@ class Kind(StrEnum):
 
 
 class Role(Flag):
-    """The roles of an option, as flags: the groups of options that it belongs to."""
+    """The roles that an option can have; an option may combine several."""
 
     PROBLEM = auto()
     """Part of the problem (goals, containers): a command poses the problem by it; in Python, a problem

@@ -256,7 +256,8 @@ def regret(
 def regret_of(best: Answer, settings: Settings, unit: int | None = None, item: int | None = None) -> Regret:
     """Return the regret of a unit or of a kitchen item; give the id of one of the two.
 
-    The problem of the answer ``best`` is solved without it. Progress and warnings are not reported.
+    The problem of the answer ``best`` is solved again without this unit or item. Progress and warnings are
+    not reported.
     """
     network, outcome = best.problem.network, best.outcome
     if unit is not None:

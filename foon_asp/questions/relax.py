@@ -258,7 +258,7 @@ class _StopWhenProved(Reporter):
         self._lower_bound: int | Fraction | None = None
 
     def tree(self, costs: Costs) -> None:
-        """Forward the costs of a new incumbent, and record its cost by the objective to prove.
+        """Forward the costs of a new incumbent, and record its cost by the objective that is to be proved.
 
         If the cost equals the lower bound, this ends the search.
         """

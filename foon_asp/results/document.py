@@ -92,7 +92,7 @@ class Document(Struct, frozen=True, kw_only=True, dict=True, tag_field="schema")
         return csv_text(self.table_rows())
 
     def markdown(self) -> str:
-        """Return the rows as a Markdown table, without empty columns and exact numbers."""
+        """Return the rows as a Markdown table; empty columns and columns of exact numbers are left out."""
         return markdown_text(self.table_rows())
 
 

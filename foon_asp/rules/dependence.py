@@ -126,7 +126,8 @@ class Dependence:
     def of_conjunct(self, conjunct: Conjunct) -> Monotonicity:
         """Return the monotonicity of one conjunct of a body.
 
-        It is ``NOT`` for a comparison, and ``BOTH`` for a conjunct of unknown kind.
+        A comparison does not depend on units (``NOT``). A conjunct of unknown kind may depend on them in both
+        directions (``BOTH``).
         """
         if isinstance(conjunct, Literal):
             depends = self.of_predicate(conjunct.signature)

@@ -299,7 +299,7 @@ def _nodes_key(
 def _exact_cost(value: "Value") -> Cost | None:
     """Return a derived value as an exact cost: ``5`` for 5, the fraction 5/2 for ``"2.50"``.
 
-    Return ``None`` if the value is no number from 0.
+    Return ``None`` unless the value is a number of at least 0.
     """
     if isinstance(value, int):
         return value if value >= 0 else None

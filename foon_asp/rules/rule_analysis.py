@@ -181,7 +181,7 @@ class Analysis:
         return kind, self._why_not_monotone(clause) if kind is Kind.OTHER else None
 
     def reads(self, signature: Signature) -> bool:
-        """Whether the body of some live clause has a predicate."""
+        """Whether the body of some live clause has the predicate ``signature``."""
         return any(
             literal.signature == signature
             for clause in self.live_clauses

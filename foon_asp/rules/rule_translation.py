@@ -143,8 +143,8 @@ class Translator:
     def at_least_one(self, clause: Clause) -> AtLeastOne | None:
         """Return the at-least-one constraint that a requiring rule stands for.
 
-        Return ``None`` if the rule calculates. Return ``None`` also if it has a condition on the tree that is
-        not the absence of a unit.
+        Return ``None`` if the rule calculates, or if it says anything about the tree except that units are
+        absent.
         """
         unit_positions = [n for n, conjunct in enumerate(clause.body) if self._count_units_read([conjunct])]
         set_positions = [n for n in range(len(clause.body)) if n not in unit_positions]
@@ -324,7 +324,10 @@ class Translator:
         ]
 
     def _new_answer_head(self, what: str, of: object) -> str:
-        """Return a head ``_of_unit(NUMBER,"what",of,World)`` with a new number and a variable world."""
+        """Return a head with a new number: ``_of_unit(NUMBER,"what",of,World)``.
+
+        ``what`` says what is answered, ``of`` is its term, and World is a variable.
+        """
         self._numbers += 1
         return self._answer_head(what, of, self._world)
 

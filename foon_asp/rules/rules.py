@@ -262,8 +262,8 @@ class Rules:
     def _evaluated_units(self, problem: Problem) -> Collection[int]:
         """Return the ids of the units to evaluate rules on: by default, all that can execute.
 
-        In a large network with at-least-one constraints alone, they are only the units with traits that these
-        constraints name.
+        In a large network whose only constraints are at-least-one constraints, only units with a trait that
+        these constraints name are evaluated.
         """
         network = problem.network
         if len(network) > TUNING.evaluated_units and not (self._analysis.removals or self._analysis.rows):

@@ -8,7 +8,7 @@ from foon_asp.network import Edit, Network, ObjectNode, Relation, StandInTable, 
 
 
 class NodePrices:
-    """The prices of nodes of a network that may stand in for others by a table.
+    """For each node of a network, the prices at which a table lets other nodes stand in for it.
 
     Prices are whole numbers: the exact prices times ``scale``, their common denominator.
     """

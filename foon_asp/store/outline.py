@@ -135,10 +135,10 @@ class Outline:
 
         ``available``: the nodes whose distance is 0.
         ``costs``: by motion, the cost of its units.
-        ``max_distance``: the maximum; greater distances become :data:`FAR`.
+        ``max_distance``: greater distances become :data:`FAR`.
         ``free``: the units whose distance is 0.
-        ``limit``: a function that may lower the maximum in each round of the search. It gets the distances
-        found so far, and returns a maximum for later ones. ``None`` for no function.
+        ``limit``: a function that may lower ``max_distance`` in each round of the search. It gets the
+        distances found so far, and returns the greatest one for later rounds. ``None`` for no function.
         """
         node_distances = np.where(available, 0, FAR)
         distances = np.where(free, 0, FAR)

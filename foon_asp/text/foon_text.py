@@ -83,7 +83,8 @@ class FoonText(Format):
     def canonical_text(self, text: str, file: str, lenient: bool = False) -> str:
         """Return a text in canonical form, line by line.
 
-        A line whose only remarks are on blanks keeps its inner blanks. Raises as :func:`rewrite_lines` does.
+        If the reader remarks only on the blanks of a line, the blanks within it stay. Raises as
+        :func:`rewrite_lines` does.
         """
         return rewrite_lines(text, file, lenient, _mend_line)
 

@@ -235,7 +235,7 @@ def _word_and_bracket(tokens: list[Token], remarks: list[Remark]) -> tuple[str, 
 
 
 def _without_end_spaces(token: Token, remarks: list[Remark]) -> str:
-    """Return a name without the spaces after it, on which it adds a remark."""
+    """Return a name without the spaces after it; if there were any, add a remark."""
     name = token.rstrip(" ")
     if name != token:
         remarks.append(_remark_at(token, "outer-space", f"spaces after {name!r} left out", len(name)))

@@ -52,7 +52,7 @@ class SideTable(FoonText):
                 yield Mention(TABLES[PurePath(file).name].names, line.partition("\t")[0].strip())
 
     def renamed_text(self, text: str, file: str, renaming: "Renaming") -> str:
-        """Return a table with the new name.
+        """Return the text of a table in which the old name is replaced by the new one.
 
         Raises :class:`UserError` if the table would then have two different rows for the new name.
         """

@@ -30,10 +30,10 @@ class StatedPrices:
     def price_by_unit(self, chosen: Mapping[FunctionalUnit, Fraction]) -> dict[FunctionalUnit, Fraction]:
         """Return the price of each unit that was recorded.
 
-        If a copy of the unit was recorded with :meth:`add_least`, this is the least price of all copies.
-        Otherwise, if the copies disagree, it is the ``chosen`` price.
+        If a copy of the unit was recorded with :meth:`add_least`, this is the least price of all copies. If
+        all copies have one price, it is this price. Otherwise, it is the ``chosen`` price.
 
-        Raises :class:`InputError` if such copies disagree and ``chosen`` has no price for the unit.
+        Raises :class:`InputError` if copies disagree and ``chosen`` has no price for the unit.
         """
         errors: list[Diagnostic] = []
         settled_prices = dict(self._least)
