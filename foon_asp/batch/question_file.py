@@ -43,10 +43,10 @@ def read_questions(
             for question in _questions_of_line(read_json(text), time_limit):
                 parse_objectives([question.objective], measures)
                 questions.append(_with_file_paths(question, file.parent))
-        except (UserError, ValueError) as problem:
-            fault = json_fault(problem) if isinstance(problem, json.JSONDecodeError) else None
+        except (UserError, ValueError) as error:
+            fault = json_fault(error) if isinstance(error, json.JSONDecodeError) else None
             source = Source(str(file), number, fault.column if fault else 1)
-            message = fault.message if fault else str(problem)
+            message = fault.message if fault else str(error)
             errors.append(Diagnostic(Severity.ERROR, "json", message, source, text))
     if errors:
         raise InputError(errors)

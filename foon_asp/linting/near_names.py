@@ -211,21 +211,22 @@ def _is_slip(
     return counts[rare] <= _LIMITS.rare and _is_rare_enough(word, other, counts[rare], counts[frequent])
 
 
-def _is_rare_enough(word: str, other: str, rare: int, frequent: int) -> bool:
+def _is_rare_enough(word: str, other: str, rare_mentions: int, frequent_mentions: int) -> bool:
     """Whether a word is so much rarer than a similar word that it is probably a slip.
 
-    ``rare`` and ``frequent`` are the numbers of mentions of the names with these words. The other name must
-    have at least three mentions. How many times more frequent it must be depends on the length of the words
-    and on how they differ. They differ by swapped letters, a changed letter, or a missing one.
+    ``rare_mentions`` and ``frequent_mentions`` are the numbers of mentions of the names with these words.
+    The other name must have at least three mentions. How many times more frequent it must be depends on the
+    length of the words and on how they differ. They differ by swapped letters, a changed letter, or a
+    missing one.
     """
     # Short words, and words with another letter, are mostly words of their own: dip, drip; batter, butter.
-    shortest, ratio = min(len(word), len(other)), frequent / rare
-    if frequent < _LIMITS.ratio:
+    shortest, ratio = min(len(word), len(other)), frequent_mentions / rare_mentions
+    if frequent_mentions < _LIMITS.ratio:
         return False
     if sorted(word) == sorted(other):  # letters have changed places
         return shortest >= _LIMITS.medium and ratio >= _LIMITS.ratio
     if len(word) == len(other):
-        return shortest >= _LIMITS.long and ratio >= _LIMITS.high_ratio and rare <= _LIMITS.very_rare
+        return shortest >= _LIMITS.long and ratio >= _LIMITS.high_ratio and rare_mentions <= _LIMITS.very_rare
     if ratio >= _LIMITS.highest_ratio:
         return shortest >= _LIMITS.short
     return shortest >= _LIMITS.long and ratio >= _LIMITS.ratio

@@ -124,8 +124,8 @@ class Converter:
         for block in blocks:
             try:
                 texts.append(self._element_text(block, block.source, lost, in_list=True))
-            except CannotHoldError as problem:
-                self._reject(problem, block.source)
+            except CannotHoldError as error:
+                self._reject(error, block.source)
         return self._writer.objects(texts)
 
     def _converted_network(self, text: str, file: str, format_: Format, lost: "_Tally") -> str:
@@ -156,8 +156,8 @@ class Converter:
                 [self._element_text(block, block.source, lost) for block in blocks]
                 for blocks in (unit.inputs, unit.outputs)
             )
-        except CannotHoldError as problem:
-            self._reject(problem, unit.motion_source)
+        except CannotHoldError as error:
+            self._reject(error, unit.motion_source)
             return ""
         lost.add([Loss.PRICES] if unit.price and not self._writer.holds_prices else [], unit.motion_source)
         return self._writer.unit(inputs, motion, outputs, unit.price)
@@ -203,9 +203,9 @@ class Converter:
             lost.add([Loss.VIDEOS] * (len(shared_videos) - len(kept)), Source(lost.file, 1))
         return kept
 
-    def _reject(self, problem: CannotHoldError, source: Source) -> None:
+    def _reject(self, error: CannotHoldError, source: Source) -> None:
         """Record a part that the target cannot hold: as an error, or as a warning if ``lenient``."""
-        self._reading.reject("cannot-hold", f"{self.target} cannot hold this: {problem}", source)
+        self._reading.reject("cannot-hold", f"{self.target} cannot hold this: {error}", source)
 
 
 class _Tally:

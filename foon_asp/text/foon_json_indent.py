@@ -45,8 +45,8 @@ def check_json(text: str, file: str) -> None:
     """Raise :class:`InputError` with the place of the first fault if a text is not JSON."""
     try:
         json.loads(text, parse_int=str, parse_float=str)
-    except json.JSONDecodeError as problem:
-        fault = json_fault(problem)
+    except json.JSONDecodeError as error:
+        fault = json_fault(error)
         line = text.split("\n")[fault.line - 1].rstrip("\r")
         message, source = fault.message, Source(file, fault.line, fault.column)
     except RecursionError:

@@ -45,8 +45,8 @@ class JsonList:
         try:
             for offset, value in self._elements():
                 yield JsonElement(value, self.position_of(offset))
-        except json.JSONDecodeError as problem:
-            syntax_fault = json_fault(problem)
+        except json.JSONDecodeError as error:
+            syntax_fault = json_fault(error)
             self.add_error(self.position_of(syntax_fault.offset), syntax_fault.message)
         except JsonFaultError as fault:
             self.add_error(self.position_of(fault.position), str(fault))

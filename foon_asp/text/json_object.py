@@ -106,8 +106,8 @@ def read_objects(elements: JsonList) -> Iterator[tuple[ObjectBlock, NodePattern,
                 yield _block_of_node(node, source)._replace(amount=amount), NodePattern.of(node), ()
                 continue
             line, states, container, remarks = read_object(value, NODE_KEYS)
-        except ValueError as problem:
-            elements.add_error(source, str(problem))
+        except ValueError as error:
+            elements.add_error(source, str(error))
         else:
             block = ObjectBlock(line, states, source, amount)
             pattern = NodePattern.of(block.node)._replace(container=container)

@@ -49,8 +49,8 @@ def read_json_units(text: str, file: str, reading: Reading) -> Iterator[ListedUn
     for element in all_elements:
         try:
             unit, remarks = _unit(element, videos)
-        except ValueError as problem:
-            elements.add_error(element.source, str(problem))
+        except ValueError as error:
+            elements.add_error(element.source, str(error))
             continue
         for remark in remarks:
             reading.warn("json-value", remark, element.source)
@@ -61,8 +61,8 @@ def read_json_units(text: str, file: str, reading: Reading) -> Iterator[ListedUn
         if not unit.outputs:
             reading.warn("no-outputs", f"the unit {motion!r} has no output objects", element.source)
         yield unit
-    for error in elements.errors:
-        reading.reject(error.code, error.message, error.source, error.excerpt)
+    for found_error in elements.errors:
+        reading.reject(found_error.code, found_error.message, found_error.source, found_error.excerpt)
 
 
 def _is_object(value: object) -> bool:

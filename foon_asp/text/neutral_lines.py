@@ -180,8 +180,8 @@ def _unit_and_price(line: str, source: Source, nodes: dict[str, ObjectNode]) -> 
     """
     try:
         value = DECODER.decode(line)
-    except json.JSONDecodeError as problem:
-        syntax_fault = json_fault(problem)
+    except json.JSONDecodeError as error:
+        syntax_fault = json_fault(error)
         raise _NeutralFaultError(syntax_fault.message, syntax_fault.column) from None
     except JsonFaultError as fault:
         raise _NeutralFaultError(str(fault), 1) from None
@@ -203,8 +203,8 @@ def _unit_and_price(line: str, source: Source, nodes: dict[str, ObjectNode]) -> 
         price = value.get(key)
         written = _price_of_number(price.text) if isinstance(price, JsonNumber) else price_from_json(price)
         return ReadUnit(name, inputs, outputs, (source,), UnitAmounts(input_amounts, output_amounts)), written
-    except ValueError as problem:
-        raise _NeutralFaultError(str(problem), line.find(f'"{key}"') + 1 if key else 1) from None
+    except ValueError as error:
+        raise _NeutralFaultError(str(error), line.find(f'"{key}"') + 1 if key else 1) from None
 
 
 @lru_cache(10_000)
