@@ -10,8 +10,8 @@ from foon_asp.deadline import LimitError
 from foon_asp.errors import UserError
 from foon_asp.escapes import escaped
 
-if TYPE_CHECKING:  # takes all results along, which an error does not need
-    from foon_asp.questions.result import Ending
+if TYPE_CHECKING:
+    from foon_asp.questions.ending import Ending
 
 
 class ExitCode(IntEnum):

@@ -22,9 +22,9 @@ from foon_asp.linting.linted_files import LintedFiles
 from foon_asp.linting.mending import is_mendable, mend
 from foon_asp.linting.vocabulary import Vocabulary
 from foon_asp.network import counted
+from foon_asp.questions.ending import Ending
 from foon_asp.questions.lint import Findings, Linted, find_findings, linted_files
 from foon_asp.questions.question import TABLES
-from foon_asp.questions.result import Ending
 from foon_asp.report.rule_page import rule_page
 from foon_asp.results.plain_values import plain
 from foon_asp.text.diagnostics import Diagnostic

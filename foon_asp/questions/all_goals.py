@@ -14,10 +14,11 @@ from foon_asp.json_layout import schema_name
 from foon_asp.problem import Objective, Problem, for_each_goal
 from foon_asp.questions.answer import Answer, answer_from_store
 from foon_asp.questions.caller import caller
+from foon_asp.questions.ending import Ending
 from foon_asp.questions.python_arguments import chosen_objectives, problem_for_rules, read_deferred
 from foon_asp.questions.python_options import CommonOptions, limits_of, settings_of
 from foon_asp.questions.question import python_question
-from foon_asp.questions.result import Ending, Result
+from foon_asp.questions.result import Result
 from foon_asp.results.document import AboutGoals
 from foon_asp.results.figure_text import figure_text
 from foon_asp.results.table import Block, Cell, Table

@@ -19,6 +19,7 @@ from foon_asp.pictures.notebook import page_bundle
 from foon_asp.plans.ranked_plans import RankedPlans, best_plans
 from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
 from foon_asp.questions.caller import caller
+from foon_asp.questions.ending import Ending
 from foon_asp.questions.options import AMOUNT, ITEMS, TREE
 from foon_asp.questions.python_arguments import (
     Objectives,
@@ -28,7 +29,7 @@ from foon_asp.questions.python_arguments import (
 )
 from foon_asp.questions.python_options import CommonOptions, settings_of
 from foon_asp.questions.question import TABLES, Kind, Option, question
-from foon_asp.questions.result import Ending, Result
+from foon_asp.questions.result import Result
 from foon_asp.questions.tree import Tree
 from foon_asp.questions.used_up_note import used_up_note
 from foon_asp.results.document import AboutGoals, Unserialized

@@ -18,8 +18,9 @@ from foon_asp.network import counted
 from foon_asp.problem import Costs, Objective, Problem, levels
 from foon_asp.problem.dead_ends import Cause
 from foon_asp.questions.caller import caller
+from foon_asp.questions.ending import Ending, ending_of_status
 from foon_asp.questions.python_arguments import limited_reading, problem_for_rules, read_deferred
-from foon_asp.questions.result import Ending, Result
+from foon_asp.questions.result import Result
 from foon_asp.questions.stand_in import StandIn, stand_in_lines, stand_ins_in
 from foon_asp.questions.used_up_note import used_up_note
 from foon_asp.questions.why_infeasible import why_infeasible
@@ -37,16 +38,6 @@ if TYPE_CHECKING:  # slow to import, and not needed to print an answer
     from foon_asp.pictures.drawing import Drawing
     from foon_asp.questions.robot_plan import RobotPlan
     from foon_asp.questions.tree import Tree
-
-
-def ending_of_status(status: Status) -> Ending:
-    """Return ``DONE`` for optimal, ``NEGATIVE`` for infeasible, and ``LIMIT`` for all other answers."""
-    return {
-        Status.OPTIMAL: Ending.DONE,
-        Status.INFEASIBLE: Ending.NEGATIVE,
-        Status.FEASIBLE: Ending.LIMIT,
-        Status.UNKNOWN: Ending.LIMIT,
-    }[status]
 
 
 class SoftConstraint(ListedConstraint, frozen=True):

@@ -12,12 +12,13 @@ from foon_asp.json_layout import schema_name
 from foon_asp.network import counted
 from foon_asp.problem import Costs, Number, Objective, Problem, success_rate
 from foon_asp.questions.caller import caller
+from foon_asp.questions.ending import Ending
 from foon_asp.questions.help_search import helped_trees
 from foon_asp.questions.options import CONTAINERS, GOALS
 from foon_asp.questions.python_arguments import problem_for_rules, require_at_least
 from foon_asp.questions.python_options import CommonOptions, settings_of
 from foon_asp.questions.question import TABLES, Kind, Option, question
-from foon_asp.questions.result import Ending, Result
+from foon_asp.questions.result import Result
 from foon_asp.questions.tree import Tree
 from foon_asp.questions.used_up_note import used_up_note
 from foon_asp.results.document import AboutGoals, Unserialized

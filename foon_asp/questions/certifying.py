@@ -21,8 +21,8 @@ from foon_asp.problem import Objective, Problem, levels
 from foon_asp.proof.certificate_subject import Subject
 from foon_asp.questions.answer import Answer, answer_from_store, answer_problem
 from foon_asp.questions.certificate_text import bound_text, certificate_lines, proof_size
+from foon_asp.questions.ending import Ending
 from foon_asp.questions.python_arguments import limited_reading, over_whole_network, problem_for_rules
-from foon_asp.questions.result import Ending
 from foon_asp.questions.tree import Tree
 from foon_asp.results.figure_text import costs_text
 from foon_asp.whole_file import write_whole

@@ -15,13 +15,14 @@ from foon_asp.pictures.drawing import Drawing
 from foon_asp.problem import Costs, Objective, Problem
 from foon_asp.proof.replay import replay_for
 from foon_asp.proof.simulation import Obstacle, Simulation, Verdict, simulate_for
+from foon_asp.questions.ending import Ending
 from foon_asp.questions.options import AMOUNT, CONTAINERS, GOAL_OF_PLAN, ITEMS, OBJECTIVES
 from foon_asp.questions.posing import Command
 from foon_asp.questions.posing_plan import pose_plan
 from foon_asp.questions.python_arguments import Objectives, chosen_objectives, over_whole_network
 from foon_asp.questions.python_options import CommonOptions, settings_of
 from foon_asp.questions.question import Kind, Option, Role, question
-from foon_asp.questions.result import Ending, Result
+from foon_asp.questions.result import Result
 from foon_asp.questions.tree import Tree, as_tree, read_answer
 from foon_asp.questions.verdict import Stop, simulation_fields, verdict_lines
 from foon_asp.results.document import AboutGoals, Unserialized

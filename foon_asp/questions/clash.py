@@ -18,7 +18,7 @@ from foon_asp.network import counted
 from foon_asp.problem import Objective, Problem
 from foon_asp.questions.answer import Answer
 from foon_asp.questions.caller import caller
-from foon_asp.questions.result import Ending
+from foon_asp.questions.ending import Ending
 from foon_asp.results.values import ListedConstraint, Value
 from foon_asp.rules.passed_constraint import Constraint, find_constraint
 

@@ -24,12 +24,13 @@ from foon_asp.pictures.comparison_chart import write_comparison_chart
 from foon_asp.problem import Problem
 from foon_asp.questions.caller import caller
 from foon_asp.questions.comparison_tables import comparison_table, published_table, summary_tables, tidy_rows
+from foon_asp.questions.ending import Ending
 from foon_asp.questions.options import CHART, CONTAINERS, EACH_GOAL, EACH_LIMITS, ITEMS, JOBS
 from foon_asp.questions.posing import Command, pose_problem
 from foon_asp.questions.python_arguments import problem_for_rules, require_at_least
 from foon_asp.questions.python_options import CommonOptions, limits_of, settings_of
 from foon_asp.questions.question import TABLES, Kind, Option, Role, question
-from foon_asp.questions.result import Ending, Result
+from foon_asp.questions.result import Result
 from foon_asp.questions.search import Retrieved
 from foon_asp.questions.search_options import (
     COUNT,

@@ -8,7 +8,8 @@ from msgspec import Meta
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
 from foon_asp.json_layout import Json, schema_name
-from foon_asp.questions.result import Ending, NothingToDrawError, Result
+from foon_asp.questions.ending import Ending
+from foon_asp.questions.result import NothingToDrawError, Result
 from foon_asp.results.table import Block
 
 _ANY_DOCUMENT = Meta(

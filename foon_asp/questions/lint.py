@@ -19,7 +19,8 @@ from foon_asp.linting.catalog import CATALOG, unknown_code_message
 from foon_asp.linting.finding import Finding, SeverityCounts
 from foon_asp.linting.lint_settings import find_settings
 from foon_asp.linting.linted_files import with_tables
-from foon_asp.questions.result import Ending, Result
+from foon_asp.questions.ending import Ending
+from foon_asp.questions.result import Result
 from foon_asp.report.lint_findings import (
     code_table,
     finding_lines,

@@ -17,6 +17,7 @@ from foon_asp.json_layout import schema_name
 from foon_asp.network import counted
 from foon_asp.problem import Costs, Objective, Problem, multiplies
 from foon_asp.questions.caller import caller
+from foon_asp.questions.ending import Ending
 from foon_asp.questions.options import AMOUNT, CHART, CONTAINERS, GOALS, ITEMS, OBJECTIVES
 from foon_asp.questions.python_arguments import (
     Objectives,
@@ -26,7 +27,7 @@ from foon_asp.questions.python_arguments import (
 )
 from foon_asp.questions.python_options import CommonOptions, settings_of
 from foon_asp.questions.question import TABLES, Option, question
-from foon_asp.questions.result import Ending, NothingToDrawError, Result
+from foon_asp.questions.result import NothingToDrawError, Result
 from foon_asp.questions.tree import Tree
 from foon_asp.questions.used_up_note import used_up_note
 from foon_asp.results.document import AboutGoals, Unserialized

@@ -15,12 +15,12 @@ from foon_asp.planning.planning_task import planning_task
 from foon_asp.problem import ITEMS, Problem
 from foon_asp.proof.simulation import Verdict
 from foon_asp.questions.check import Checked
+from foon_asp.questions.ending import Ending
 from foon_asp.questions.posing import Command
 from foon_asp.questions.posing_plan import count_units_in
 from foon_asp.questions.python_arguments import over_whole_network
 from foon_asp.questions.python_options import Posed, start_deadline
 from foon_asp.questions.question import Kind, Option, Role, question
-from foon_asp.questions.result import Ending
 from foon_asp.questions.tree import Tree
 from foon_asp.results.table import Block
 from foon_asp.text.plain_file import read_plain_text

@@ -19,6 +19,7 @@ from foon_asp.network.spelling import near_labels
 from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
 from foon_asp.questions.answer import Answer, WithAnswer
 from foon_asp.questions.caller import caller
+from foon_asp.questions.ending import Ending
 from foon_asp.questions.options import AMOUNT, ITEMS, TREE
 from foon_asp.questions.python_arguments import (
     Objectives,
@@ -28,7 +29,6 @@ from foon_asp.questions.python_arguments import (
 )
 from foon_asp.questions.python_options import CommonOptions, settings_of
 from foon_asp.questions.question import TABLES, Kind, Option, question
-from foon_asp.questions.result import Ending
 from foon_asp.results.figure_text import costs_text, success_text
 from foon_asp.results.table import Block
 from foon_asp.results.values import Measures, Mention, Node, Value

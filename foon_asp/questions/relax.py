@@ -16,12 +16,13 @@ from foon_asp.network import counted
 from foon_asp.planning.strips_task import DERIVED, StripsTask
 from foon_asp.planning.task_files import read_task
 from foon_asp.problem import Costs, Objective, Problem
-from foon_asp.questions.answer import Answer, answer_problem, ending_of_status
+from foon_asp.questions.answer import Answer, answer_problem
 from foon_asp.questions.caller import caller
+from foon_asp.questions.ending import Ending, ending_of_status
 from foon_asp.questions.posing import pose_without_data
 from foon_asp.questions.python_options import Limits, start_deadline
 from foon_asp.questions.question import Kind, Option, question
-from foon_asp.questions.result import Ending, Result
+from foon_asp.questions.result import Result
 from foon_asp.results.document import Unserialized
 from foon_asp.results.plain_values import fraction_text
 from foon_asp.results.table import Block

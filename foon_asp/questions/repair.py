@@ -18,13 +18,13 @@ from foon_asp.network import FunctionalUnit, ObjectNode, StandInTable, counted
 from foon_asp.problem import Costs, Objective, Problem
 from foon_asp.proof.rule_meaning import ALL_STEPS
 from foon_asp.proof.simulation import Verdict, simulate_for
-from foon_asp.questions.answer import ending_of_status
 from foon_asp.questions.caller import caller
 from foon_asp.questions.certificate_text import certificate_lines
+from foon_asp.questions.ending import Ending, ending_of_status
 from foon_asp.questions.python_arguments import over_whole_network
 from foon_asp.questions.python_options import CommonOptions, settings_of
 from foon_asp.questions.question import python_question
-from foon_asp.questions.result import Ending, Result
+from foon_asp.questions.result import Result
 from foon_asp.questions.stand_in import StandIn, stand_in_lines, stand_ins_in
 from foon_asp.questions.tree import Tree, as_tree
 from foon_asp.results.document import AboutGoals, Unserialized

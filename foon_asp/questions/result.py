@@ -1,12 +1,12 @@
 """The result of a question: a document that can be drawn, and written into files."""
 
 from collections.abc import Iterable, Mapping
-from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
+from foon_asp.questions.ending import Ending
 from foon_asp.results.document import Document
 
 if TYPE_CHECKING:
@@ -23,17 +23,6 @@ ENDINGS = {
     ".md": "markdown",
 }
 """The format by the ending of a file name."""
-
-
-class Ending(StrEnum):
-    """How a question ended; each ending has an exit code."""
-
-    DONE = "done"
-    """What was asked for was found, and proved where there is something to prove."""
-    NEGATIVE = "negative"
-    """It is proved that no answer exists, or a check failed."""
-    LIMIT = "limit"
-    """It was stopped at a limit, with what was known by then."""
 
 
 class NothingToDrawError(UserError):

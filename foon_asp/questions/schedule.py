@@ -23,15 +23,15 @@ from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.proof.timetable import ScheduleResources, ToolName, timetable_fault
 from foon_asp.proof.timetable import TimedStep as Timed
 from foon_asp.proof.used_up_run import used_up_run
-from foon_asp.questions.answer import ending_of_status
 from foon_asp.questions.caller import caller
 from foon_asp.questions.durations import Durations, duration_of, stated_durations
+from foon_asp.questions.ending import Ending, ending_of_status
 from foon_asp.questions.options import AMOUNT, CHART, CONTAINERS, GOAL_OF_PLAN, PLAN_ITEMS
 from foon_asp.questions.posing_plan import pose_plan
 from foon_asp.questions.python_arguments import require_at_least, with_items
 from foon_asp.questions.python_options import Posed, start_deadline
 from foon_asp.questions.question import TABLES, Kind, Option, Role, question
-from foon_asp.questions.result import Ending, NothingToDrawError, NoTreeError, Result
+from foon_asp.questions.result import NothingToDrawError, NoTreeError, Result
 from foon_asp.questions.tree import OTHER_READING, Tree, as_tree
 from foon_asp.results.document import AboutGoals
 from foon_asp.results.table import Block, Table

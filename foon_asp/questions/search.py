@@ -11,9 +11,10 @@ from foon_asp.json_layout import schema_name
 from foon_asp.pictures.drawing import Drawing
 from foon_asp.problem import Costs, Problem
 from foon_asp.proof.simulation import Simulation, Verdict
+from foon_asp.questions.ending import Ending
 from foon_asp.questions.python_options import Posed, start_deadline
 from foon_asp.questions.question import question
-from foon_asp.questions.result import Ending, Result
+from foon_asp.questions.result import Result
 from foon_asp.questions.search_options import COUNT, DEPTH, TIES, search_settings, searches_named
 from foon_asp.questions.tree import Tree
 from foon_asp.questions.used_up_note import used_up_note

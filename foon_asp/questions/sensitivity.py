@@ -12,13 +12,13 @@ from foon_asp.network import counted
 from foon_asp.problem import Objective, Problem, success_rate
 from foon_asp.questions.answer import Answer, WithAnswer
 from foon_asp.questions.caller import caller
-from foon_asp.questions.envelope import Envelope, IntervalEnd
+from foon_asp.questions.ending import Ending
 from foon_asp.questions.flip import Flip, decimal_text
+from foon_asp.questions.optimality_interval import Envelope, IntervalEnd
 from foon_asp.questions.options import CONTAINERS, GOALS
 from foon_asp.questions.python_arguments import problem_for_rules
 from foon_asp.questions.python_options import CommonOptions, settings_of
 from foon_asp.questions.question import TABLES, question
-from foon_asp.questions.result import Ending
 from foon_asp.results.figure_text import success_text
 from foon_asp.results.plain_values import fraction_text
 from foon_asp.results.table import Block, Table

@@ -33,6 +33,7 @@ from foon_asp.problem.purchases import Purchases
 from foon_asp.proof.counted_run import counted_run
 from foon_asp.questions.answer import Answer, WithAnswer
 from foon_asp.questions.caller import caller
+from foon_asp.questions.ending import Ending
 from foon_asp.questions.options import AMOUNT, ITEMS, TREE
 from foon_asp.questions.python_arguments import (
     Objectives,
@@ -42,7 +43,6 @@ from foon_asp.questions.python_arguments import (
 )
 from foon_asp.questions.python_options import CommonOptions, settings_of
 from foon_asp.questions.question import TABLES, Kind, Option, question
-from foon_asp.questions.result import Ending
 from foon_asp.results.figure_text import costs_text
 from foon_asp.results.table import Block
 from foon_asp.results.values import Node, Value

@@ -16,12 +16,13 @@ from foon_asp.network import FunctionalUnit, ObjectNode
 from foon_asp.problem import Problem
 from foon_asp.proof.replay import Replay, replay_for, replayable_problem
 from foon_asp.questions.answer import Answer, answer_problem
+from foon_asp.questions.ending import Ending
 from foon_asp.questions.options import AMOUNT, CONTAINERS, GOAL_OF_PLAN, OBJECTIVES, PLAN_ITEMS
 from foon_asp.questions.posing_plan import pose_plan_or_state
 from foon_asp.questions.python_arguments import Objectives, chosen_objectives, with_items
 from foon_asp.questions.python_options import Posed, start_deadline
 from foon_asp.questions.question import TABLES, Kind, Option, Role, question
-from foon_asp.questions.result import Ending, Result
+from foon_asp.questions.result import Result
 from foon_asp.questions.tree import OTHER_READING, Tree, as_tree
 from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.table import Block

@@ -11,6 +11,7 @@ from foon_asp.network import counted
 from foon_asp.problem import Problem
 from foon_asp.questions.answer import Answer, WithAnswer
 from foon_asp.questions.caller import caller
+from foon_asp.questions.ending import Ending
 from foon_asp.questions.python_arguments import (
     Objectives,
     chosen_objectives,
@@ -19,7 +20,6 @@ from foon_asp.questions.python_arguments import (
 )
 from foon_asp.questions.python_options import CommonOptions, settings_of
 from foon_asp.questions.question import not_for_used_up_items, python_question
-from foon_asp.questions.result import Ending
 from foon_asp.results.table import Block
 from foon_asp.results.values import Mention
 from foon_asp.results.values_of import mention_of, question_fields

@@ -26,10 +26,11 @@ from foon_asp.proof.rule_meaning import ALL_STEPS, OWN, Rule
 from foon_asp.proof.verified_claim import ItemClaims, Verified
 from foon_asp.proof.verify_plan import is_of_plan, verify_any
 from foon_asp.questions.certificate_text import bound_text, proof_size, trusted_text
+from foon_asp.questions.ending import Ending
 from foon_asp.questions.posing import DATA, Command, pose_data
 from foon_asp.questions.python_options import Limits, start_deadline
 from foon_asp.questions.question import Kind, Option, Role, question
-from foon_asp.questions.result import Ending, Result
+from foon_asp.questions.result import Result
 from foon_asp.results.document import AboutGoals
 from foon_asp.results.table import Block
 from foon_asp.results.values import Measures

@@ -32,6 +32,7 @@ from foon_asp.questions.alternatives import Alternatives, alternatives
 from foon_asp.questions.answer import Answer, answer_problem, answer_under_rules
 from foon_asp.questions.caller import caller
 from foon_asp.questions.certifying import solve_with_certificate
+from foon_asp.questions.ending import Ending
 from foon_asp.questions.options import AMOUNT, CONTAINERS, GOALS, ITEMS, OBJECTIVES
 from foon_asp.questions.page_data import PageData, UnitRate
 from foon_asp.questions.pareto import Front, pareto
@@ -44,7 +45,7 @@ from foon_asp.questions.python_arguments import (
 )
 from foon_asp.questions.python_options import CommonOptions, Limits, settings_of, start_deadline
 from foon_asp.questions.question import Kind, Option, Role, question
-from foon_asp.questions.result import Ending, NothingToDrawError, Result
+from foon_asp.questions.result import NothingToDrawError, Result
 from foon_asp.questions.search import Retrieved, search
 from foon_asp.questions.search_options import usable_searches
 from foon_asp.questions.shopping_list import Shopping, shopping_list

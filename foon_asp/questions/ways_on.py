@@ -13,10 +13,10 @@ from foon_asp.problem import Problem
 from foon_asp.problem.relevance import reach, relevant_units
 from foon_asp.questions.answer import Answer, WithAnswer, answer_problem
 from foon_asp.questions.caller import asked_by, caller
+from foon_asp.questions.ending import Ending
 from foon_asp.questions.python_arguments import Objectives, chosen_objectives, over_whole_network
 from foon_asp.questions.python_options import Posed, start_deadline
 from foon_asp.questions.question import not_for_used_up_items, python_question
-from foon_asp.questions.result import Ending
 from foon_asp.questions.shopping_list import shopping_list
 from foon_asp.results.table import Block
 from foon_asp.results.values import Node, Unit

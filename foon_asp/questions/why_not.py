@@ -15,11 +15,12 @@ from foon_asp.network.slip import nearest_nodes, slip_between
 from foon_asp.problem import Objective, Problem
 from foon_asp.problem.dead_ends import Cause, DeadEnds, RootCause, dead_ends
 from foon_asp.problem.for_sale import Shop
+from foon_asp.questions.ending import Ending
 from foon_asp.questions.options import CONTAINERS, GOALS
 from foon_asp.questions.python_arguments import constraint_weights, over_whole_network
 from foon_asp.questions.python_options import CommonOptions, settings_of
 from foon_asp.questions.question import Kind, Option, question
-from foon_asp.questions.result import Ending, Result
+from foon_asp.questions.result import Result
 from foon_asp.questions.stand_in import StandIn, stand_ins_in
 from foon_asp.results.document import AboutGoals
 from foon_asp.results.table import Block

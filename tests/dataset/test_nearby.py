@@ -30,7 +30,7 @@ from foon_asp.problem import ContainerRule, Objective, Problem, levels, reach
 from foon_asp.proof import verifier
 from foon_asp.questions.answer import answer_from_store, answer_under_rules
 from foon_asp.questions.certifying import solve_with_certificate
-from foon_asp.questions.result import Ending
+from foon_asp.questions.ending import Ending
 from foon_asp.rules.passed_constraint import RuleText
 from foon_asp.store.import_files import import_files
 from foon_asp.text.data_folder import DataFiles

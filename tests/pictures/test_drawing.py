@@ -23,7 +23,7 @@ from foon_asp.pictures.graphml import graphml_text
 from foon_asp.pictures.graphviz import MAX_UNITS, svg_picture
 from foon_asp.pictures.mermaid import mermaid_text
 from foon_asp.pictures.painting import paint_drawing
-from foon_asp.questions.result import Ending
+from foon_asp.questions.ending import Ending
 from tests.conftest import Cli
 
 SVG = "{http://www.w3.org/2000/svg}"

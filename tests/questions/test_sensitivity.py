@@ -15,8 +15,8 @@ from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit
 from foon_asp.problem import ContainerRule, Problem
 from foon_asp.problem.root import Root
+from foon_asp.questions.ending import Ending
 from foon_asp.questions.flip import Flip
-from foon_asp.questions.result import Ending
 from foon_asp.questions.sensitivity import RateEnd, RateInterval, Sensitivity, sensitivity
 from foon_asp.resources import encodings_folder
 from tests.conftest import STRUCK_WHILE_READING, Cli

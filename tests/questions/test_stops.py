@@ -10,8 +10,9 @@ import foon_asp
 from foon_asp import Cancel, Problem, StoppedError
 from foon_asp.problem import ContainerRule
 from foon_asp.questions.assist import Assistance
+from foon_asp.questions.ending import Ending
 from foon_asp.questions.pareto import Front
-from foon_asp.questions.result import Ending, Result
+from foon_asp.questions.result import Result
 from foon_asp.questions.sensitivity import Sensitivity
 from tests.questions.test_assist import ways as helped_ways
 from tests.questions.test_sensitivity import ways as made_ways

@@ -13,7 +13,7 @@ import pytest
 import foon_asp
 from foon_asp.errors import UserError
 from foon_asp.problem import Problem
-from foon_asp.questions.result import Ending
+from foon_asp.questions.ending import Ending
 from foon_asp.resources import encodings_folder
 from tests.conftest import ROOT, Cli, valid
 from tests.hypergraph.test_reductions import posed

@@ -1,0 +1,23 @@
+"""How a question ended, which decides the exit code of its command."""
+
+from enum import StrEnum
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:  # takes the solver along
+    from foon_asp.asp import Status
+
+
+class Ending(StrEnum):
+    """How a question ended; each ending has an exit code."""
+
+    DONE = "done"
+    """What was asked for was found, and proved where there is something to prove."""
+    NEGATIVE = "negative"
+    """It is proved that no answer exists, or a check failed."""
+    LIMIT = "limit"
+    """It was stopped at a limit, with what was known by then."""
+
+
+def ending_of_status(status: "Status") -> Ending:
+    """Return ``DONE`` for optimal, ``NEGATIVE`` for infeasible, and ``LIMIT`` for all other answers."""
+    return {"optimal": Ending.DONE, "infeasible": Ending.NEGATIVE}.get(status, Ending.LIMIT)
