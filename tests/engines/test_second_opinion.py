@@ -348,7 +348,7 @@ def test_a_tree_that_is_denied_is_our_bug(cli: Cli, tmp_path: Path, monkeypatch:
     def denied(*args: object) -> SoftOutcome:
         return SoftOutcome(without_tree(solve_soft(*args).outcome), None, ())  # type: ignore[arg-type]
 
-    monkeypatch.setattr("foon_asp.questions.solve_soft.solve", denied)
+    monkeypatch.setattr("foon_asp.questions.solve_soft.solve_soft", denied)
     monkeypatch.chdir(tmp_path)
     words = ("--goal", "ice", "--soft", "forbid_motion=3", "-c", "forbidden_motion=crush", "--cross-check")
     ran = cli("solve", *words)
