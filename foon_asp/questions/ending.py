@@ -20,4 +20,11 @@ class Ending(StrEnum):
 
 def ending_of_status(status: "Status") -> Ending:
     """Return ``DONE`` for optimal, ``NEGATIVE`` for infeasible, and ``LIMIT`` for all other answers."""
-    return {"optimal": Ending.DONE, "infeasible": Ending.NEGATIVE}.get(status, Ending.LIMIT)
+    from foon_asp.asp import Status  # noqa: PLC0415 (loaded already by whoever has a status)
+
+    return {
+        Status.OPTIMAL: Ending.DONE,
+        Status.INFEASIBLE: Ending.NEGATIVE,
+        Status.FEASIBLE: Ending.LIMIT,
+        Status.UNKNOWN: Ending.LIMIT,
+    }[status]
