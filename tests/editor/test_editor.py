@@ -2,6 +2,8 @@
 
 import json
 import re
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -299,3 +301,9 @@ def test_the_grammar_knows_every_line_that_is_as_it_should_be(text: str) -> None
         parsed = reader.parse(line) if line[:1] in {"O", "S", "M"} else None
         if parsed is not None and not isinstance(parsed, Exception) and not parsed.remarks:
             assert scopes(line)[0][0] == line[0]
+
+
+def test_a_length_that_is_no_number_ends_the_server() -> None:
+    words = [sys.executable, "-m", "foon_asp", "lsp"]
+    ran = subprocess.run(words, input=b"Content-Length: long\r\n\r\n{}", capture_output=True, check=False)
+    assert (ran.returncode, ran.stdout, ran.stderr) == (0, b"", b"")
